@@ -23,7 +23,7 @@ impl Polygon {
 
     /// A regular polygon in space, `facets` even and at least 4; `turn` is the angle of d_0 from t1 towards t2, in radians.
     pub fn regular(facets: u16, turn: f64) -> Polygon {
-        debug_assert!(facets >= 4 && facets % 2 == 0, "a polygon of {facets} facets");
+        debug_assert!(facets >= 4 && facets.is_multiple_of(2), "a polygon of {facets} facets");
         Polygon { facets, turn }
     }
 
@@ -49,7 +49,7 @@ impl Polygon {
         }
         // A quarter of the circle is exact, so that facets along t1 and t2 are.
         let quarters = 4 * facet;
-        if self.turn == 0.0 && quarters % self.facets() == 0 {
+        if self.turn == 0.0 && quarters.is_multiple_of(self.facets()) {
             return if quarters == 0 { [1.0, 0.0] } else { [0.0, 1.0] };
         }
         let angle = self.turn + TAU * facet as f64 / self.facets() as f64;

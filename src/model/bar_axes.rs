@@ -60,8 +60,7 @@ impl<T: Real> BarAxes<T> {
         let (_, guide) = direction([[0.0; 3], guide]).ok_or(AxesFault::Orientation)?;
         let across: [T; 3] = cross(x, guide);
         let sine = dot(across, across).sqrt();
-        // Written so that no number at all is refused.
-        if !(sine.to_f64() >= UPRIGHT) {
+        if sine.to_f64().is_nan() || sine.to_f64() < UPRIGHT {
             return Err(AxesFault::Orientation);
         }
         // `across` is square to x but for ε over the sine; y is so to ε, and z = x × y to both.

@@ -13,7 +13,7 @@ pub struct Faces {
 
 /// The number of corners among the nodes of a side: 3 of 3 or 6, 4 of 4 or 8.
 pub fn corners(nodes: usize) -> usize {
-    if nodes % 3 == 0 { 3 } else { 4 }
+    if nodes.is_multiple_of(3) { 3 } else { 4 }
 }
 
 fn key(nodes: &[usize]) -> Box<[usize]> {

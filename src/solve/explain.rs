@@ -119,8 +119,8 @@ impl Prepared {
         let RunData::Contact { problem, .. } = &solved.run else {
             return None;
         };
-        let plane = |report: &&Box<RayReport>| report.class == RayClass::Mechanism && !problem.system.is_in_space();
-        let report = solved.ray.as_ref().filter(plane)?;
+        let plane = |report: &&RayReport| report.class == RayClass::Mechanism && !problem.system.is_in_space();
+        let report = solved.ray.as_deref().filter(plane)?;
         let budget = Budget::new(watch, REMEDY_TIME);
         let solves = |changed: &ContactProblem| {
             let rules = Rules { engine: Engine::Scheme, ..Rules::default() };

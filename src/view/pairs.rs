@@ -34,16 +34,19 @@ pub fn table(pairs: &[PairState], units: &Units) -> Table {
     part(&pairs.iter().collect::<Vec<_>>(), pairs, units)
 }
 
+/// What a column shows of a pair.
+type Reader = fn(&PairState) -> f64;
+
 /// The rows of some of the pairs, in the powers of ten of all.
 pub fn part(some: &[&PairState], all: &[PairState], units: &Units) -> Table {
-    let column = |column: Column, value: fn(&PairState) -> f64| column.with_unwritten(largest(all.iter().map(value)));
+    let column = |column: Column, value: Reader| column.with_unwritten(largest(all.iter().map(value)));
     let force = |head: &str| Column::numbers(head, force_unit(units)).clean().of(1);
     let length = |head: &str| Column::numbers(head, length_unit(units)).clean().of(2);
     let friction = all.iter().any(|pair| pair.law.has_tangential_joint());
-    let mut columns: Vec<(Column, fn(&PairState) -> f64)> = Vec::new();
+    let mut columns: Vec<(Column, Reader)> = Vec::new();
     if all.iter().any(|pair| pair.space.is_some()) {
         columns.extend([
-            (force("x_n"), (|pair| pair.x_n) as fn(&PairState) -> f64),
+            (force("x_n"), (|pair| pair.x_n) as Reader),
             (force("x_t1").droppable(1), |pair| pair.friction()[0]),
             (force("x_t2").droppable(1), |pair| pair.friction()[1]),
             (length("z_n").droppable(2), |pair| pair.z_n),
@@ -52,20 +55,20 @@ pub fn part(some: &[&PairState], all: &[PairState], units: &Units) -> Table {
         ]);
         if friction {
             columns.extend([
-                (force("bound").droppable(3), (|pair| pair.bound) as fn(&PairState) -> f64),
+                (force("bound").droppable(3), (|pair| pair.bound) as Reader),
                 (force("reserve").droppable(4), PairState::reserve),
             ]);
         }
     } else {
         columns.extend([
-            (force("x_n"), (|pair| pair.x_n) as fn(&PairState) -> f64),
+            (force("x_n"), (|pair| pair.x_n) as Reader),
             (force("x_τ").droppable(1), |pair| pair.x_t),
             (length("z_n").droppable(2), |pair| pair.z_n),
             (length("z_τ"), |pair| pair.z_t),
         ]);
         if friction {
             columns.extend([
-                (force("bound").droppable(3), (|pair| pair.bound) as fn(&PairState) -> f64),
+                (force("bound").droppable(3), (|pair| pair.bound) as Reader),
                 (force("x⁺").droppable(4), |pair| pair.reserve_plus),
                 (force("x⁻").droppable(5), |pair| pair.reserve_minus),
             ]);

@@ -104,7 +104,7 @@ impl Report {
 /// Words with what stands in backticks as code, where they come in pairs.
 fn html_text(words: &str) -> String {
     let parts: Vec<&str> = words.split('`').collect();
-    if parts.len() % 2 == 0 {
+    if parts.len().is_multiple_of(2) {
         return escaped(words);
     }
     let part = |(index, part): (usize, &&str)| match index % 2 {

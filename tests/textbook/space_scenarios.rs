@@ -38,7 +38,7 @@ fn vector(value: &Value) -> [f64; 2] {
 /// slip.
 fn obeys_coulomb(pairs: &Value, f: f64, digits: f64) {
     let pairs = pairs.as_array().expect("pairs");
-    let size = |key: &str| pairs.iter().map(|pair| vector(&pair[key]).map(f64::abs)).flatten().fold(0.0, f64::max);
+    let size = |key: &str| pairs.iter().flat_map(|pair| vector(&pair[key]).map(f64::abs)).fold(0.0, f64::max);
     let force = pairs.iter().map(|pair| number(&pair["x_n"])).fold(size("x_t"), f64::max);
     let slip = size("z_t");
     for pair in pairs {

@@ -314,7 +314,7 @@ fn the_plane_in_space_gives_the_same_numbers() {
         let r = DMatrix::from_fn(2 * m, 2 * m, |i, j| r[(i.min(j), i.max(j))]);
         let load: Vec<f64> = (0..2 * m).map(|i| rng.random_range(-1.0..1.0) + f64::from(i < m)).collect();
         let f = 0.2 + 0.1 * (k % 3) as f64;
-        let flat = |i: usize| if i < m { Some(i) } else { ((i - m) % 2 == 0).then(|| m + (i - m) / 2) };
+        let flat = |i: usize| if i < m { Some(i) } else { (i - m).is_multiple_of(2).then(|| m + (i - m) / 2) };
         let entry = |i: usize, j: usize| match (flat(i), flat(j)) {
             (Some(i), Some(j)) => r[(i, j)],
             (None, None) if i == j => 1.0,

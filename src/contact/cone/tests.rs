@@ -42,7 +42,7 @@ impl Owned {
         }
     }
 
-    fn from_zero(&self) -> Result<ConeAnswer, ConeFailure> {
+    fn answer_from_zero(&self) -> Result<ConeAnswer, ConeFailure> {
         self.solve(&DVector::zeros(self.load.len()))
     }
 
@@ -136,7 +136,7 @@ fn one_node_on_two_springs_slips_along_the_force() {
     let stiffness = DMatrix::identity(3, 3);
     let load = [10.0, -3.0, -4.0];
     for law in [PairLaw::bilateral(2.0), PairLaw::rubbing(0.2, 0.0, 0.0), PairLaw::rubbing(0.1, 1.0, 0.0)] {
-        let answer = Owned::new(stiffness.clone(), &load, &[law]).from_zero().expect("an answer");
+        let answer = Owned::new(stiffness.clone(), &load, &[law]).answer_from_zero().expect("an answer");
         assert_eq!(answer.states, [ConeState::Slip]);
         for (found, expected) in answer.z.iter().zip([0.0, 1.8, 2.4]) {
             assert!((found - expected).abs() <= 4.0 * f64::EPSILON, "{found} for {expected}");
@@ -149,7 +149,7 @@ fn one_node_on_two_springs_slips_along_the_force() {
 
 #[test]
 fn states_at_their_limits() {
-    let solve = |load: [f64; 3], law: PairLaw| Owned::new(DMatrix::identity(3, 3), &load, &[law]).from_zero();
+    let solve = |load: [f64; 3], law: PairLaw| Owned::new(DMatrix::identity(3, 3), &load, &[law]).answer_from_zero();
     // Friction just used up, no slip; a hair more, and it slips by that hair.
     let answer = solve([4.0, 0.3, 0.4], PairLaw::rubbing(0.125, 0.0, 0.0)).expect("held");
     assert_eq!((answer.states[0], answer.z.amax()), (ConeState::Stick, 0.0));
@@ -216,7 +216,7 @@ fn of_one_pair_the_answer_is_one_of_all_that_there_are() {
         let load: Vec<f64> = (0..3).map(|_| rng.random_range(-1.0..1.0)).collect();
         let problem = Owned::new(stiffness, &load, &[PairLaw::rubbing(f, 0.0, 0.0)]);
         let answers = answers_of_one_pair(&problem);
-        let answer = problem.from_zero().unwrap_or_else(|failure| panic!("problem {k}: {failure}; {answers:?}"));
+        let answer = problem.answer_from_zero().unwrap_or_else(|failure| panic!("problem {k}: {failure}; {answers:?}"));
         slipping += usize::from(answer.states[0] == ConeState::Slip);
         let size = answer.z.amax().max(1e-3);
         let near = |other: &&[f64; 3]| (0..3).all(|i| (other[i] - answer.z[i]).abs() <= 1e-9 * size);
@@ -263,7 +263,7 @@ fn the_iteration_on_the_forces_ends_in_the_same_answer() {
             continue;
         }
         compared += 1;
-        let answer = problem.from_zero().expect("an answer");
+        let answer = problem.answer_from_zero().expect("an answer");
         assert!((&answer.z - &z).amax() <= 1e-9 * z.amax().max(1e-3), "problem {k}: {} for {z}", answer.z);
     }
     assert!(compared > 40, "{compared}");
@@ -301,7 +301,7 @@ fn a_block_on_springs_is_held_to_its_limit() {
         let push = share * f * weight;
         let turn = (at[0] * sin - at[1] * cos) * push;
         let resultant = [push * cos, push * sin, -weight, -weight * at[1], weight * at[0], turn];
-        body_on_springs(&corners, [3.0, 1.0], resultant, PairLaw::rubbing(f, 0.0, 0.0)).from_zero()
+        body_on_springs(&corners, [3.0, 1.0], resultant, PairLaw::rubbing(f, 0.0, 0.0)).answer_from_zero()
     };
     let mut slipping = 0;
     for share in [0.5, 0.9, 0.99, 0.999, 1.0 - 1e-4, 1.0 - 1e-6] {
@@ -321,7 +321,7 @@ fn a_ring_stands_to_its_friction_torque() {
         (0..8).map(|i| f64::from(i) * std::f64::consts::FRAC_PI_4).map(|a| [a.cos(), a.sin()]).collect();
     let turned = |share: f64| {
         let resultant = [0.0, 0.0, -8.0, 0.0, 0.0, share * 0.4 * 8.0];
-        body_on_springs(&ring, [5.0, 2.0], resultant, PairLaw::rubbing(0.4, 0.0, 0.0)).from_zero()
+        body_on_springs(&ring, [5.0, 2.0], resultant, PairLaw::rubbing(0.4, 0.0, 0.0)).answer_from_zero()
     };
     for share in [0.5, 1.0 - 1e-6, 1.0 - 1e-9] {
         assert!(turned(share).expect("it stands").states.iter().all(|state| *state == ConeState::Stick), "{share}");
@@ -343,7 +343,7 @@ fn scales_of_joints_and_units_change_nothing() {
             load: DVector::from_fn(3 * m, |i, _| of(i) * plain.load[i]),
             ..plain.clone()
         };
-        let answer = scaled.from_zero().unwrap_or_else(|failure| panic!("problem {k}: {failure}"));
+        let answer = scaled.answer_from_zero().unwrap_or_else(|failure| panic!("problem {k}: {failure}"));
         assert!(answer.check.violation() <= 4.0 * NOISE);
         // Forces in MN for N, lengths in m for mm, as powers of two: the same numbers.
         let units = Owned {
@@ -352,7 +352,7 @@ fn scales_of_joints_and_units_change_nothing() {
             pairs: plain.pairs.iter().map(|pair| in_units(pair, 4f64.powi(-3))).collect(),
             kernel: plain.kernel.clone(),
         };
-        let (one, other) = (plain.from_zero().expect("an answer"), units.from_zero().expect("an answer"));
+        let (one, other) = (plain.answer_from_zero().expect("an answer"), units.answer_from_zero().expect("an answer"));
         assert_eq!(one.z * 4f64.powi(-8), other.z, "problem {k}");
         assert_eq!((one.states, one.steps), (other.states, other.steps));
     }
@@ -376,5 +376,5 @@ fn what_cannot_be_solved_says_why() {
     let stopped = answer_on_cone(&problem.problem(&problem.load.abs()), &DVector::zeros(3), &Stopped);
     assert_eq!(stopped, Err(ConeFailure::Stopped));
     problem.load[1] = f64::NAN;
-    assert_eq!(problem.from_zero(), Err(ConeFailure::NotFinite));
+    assert_eq!(problem.answer_from_zero(), Err(ConeFailure::NotFinite));
 }

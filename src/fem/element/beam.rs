@@ -331,7 +331,8 @@ mod tests {
         for shear in [None, Some(5.0)] {
             let by_shear = |moment: f64| shear.map_or(0.0, |stiffness| moment / stiffness);
             let simple_point = |x: f64| if x <= a { p * b * x / l } else { p * a * (l - x) / l };
-            let cases: [(_, _, Box<dyn Fn(f64) -> f64>); 4] = [
+            type Curve<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
+            let cases: [(_, _, Curve); 4] = [
                 (
                     [true; 2],
                     uniform([0.0, q]),

@@ -134,7 +134,7 @@ impl<M: Deref<Target = Mesh>> Surface<M> {
     fn find_facing(&self) -> Vec<Facing> {
         let surface = self.faces.surface();
         let mut found: Vec<Facing> = Vec::new();
-        for direction in 0..DIRECTIONS.len() {
+        for (direction, word) in DIRECTIONS.iter().enumerate() {
             let sides: Vec<&FaceSide> =
                 surface.iter().copied().filter(|side| self.direction(side) == direction).collect();
             let mut groups = Groups::new(self.mesh.nodes.len());
@@ -151,8 +151,8 @@ impl<M: Deref<Target = Mesh>> Surface<M> {
             pieces.sort_by(|a, b| first(a).partial_cmp(&first(b)).unwrap_or(std::cmp::Ordering::Equal));
             for (number, face) in pieces.into_iter().enumerate() {
                 let name = match count {
-                    1 => DIRECTIONS[direction].to_owned(),
-                    _ => format!("{}{}", DIRECTIONS[direction], number + 1),
+                    1 => (*word).to_owned(),
+                    _ => format!("{word}{}", number + 1),
                 };
                 found.push(Facing { direction, name, face });
             }

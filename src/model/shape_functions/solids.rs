@@ -332,7 +332,7 @@ mod tests {
                 let [p, q, r] = [a, b, c].map(|n| n as i32);
                 let found: f64 =
                     shape.points(bulges).iter().map(|([x, y, z], w)| w * x.powi(p) * y.powi(q) * z.powi(r)).sum();
-                let line = |n: u32| if n % 2 == 0 { 2.0 / f64::from(n + 1) } else { 0.0 };
+                let line = |n: u32| if n.is_multiple_of(2) { 2.0 / f64::from(n + 1) } else { 0.0 };
                 let right = if tetrahedron {
                     factorial(a) * factorial(b) * factorial(c) / factorial(a + b + c + 3)
                 } else {

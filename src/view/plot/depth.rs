@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn lines_are_split_where_they_pass_behind() {
         let square = vec![[-1.0, -1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]];
-        let depths = Depths::of(&[square.clone()]).unwrap();
+        let depths = Depths::of(std::slice::from_ref(&square)).unwrap();
         let [seen, hidden] = depths.split(&[[-3.0, 0.1, 0.0], [3.0, 0.1, 0.0]]);
         let [before, after] = &seen[..] else { panic!("{seen:?}") };
         let [behind] = &hidden[..] else { panic!("{hidden:?}") };
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn a_leaning_face_does_not_hide_its_lines() {
         let face = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 3.0], [1.0, 1.0, 4.0], [0.0, 1.0, 1.0]];
-        let depths = Depths::of(&[face.clone()]).unwrap();
+        let depths = Depths::of(std::slice::from_ref(&face)).unwrap();
         for (a, b) in [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)] {
             assert!(depths.split(&[face[a], face[b]])[1].is_empty());
         }

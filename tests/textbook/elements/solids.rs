@@ -99,7 +99,7 @@ impl Mesh {
             let corner = |a: usize, b: usize, c: usize| i + a + (N + 1) * (j + b + (N + 1) * (k + c));
             let below = [corner(0, 0, 0), corner(1, 0, 0), corner(1, 1, 0), corner(0, 1, 0)];
             let cube = [below, below.map(|node| node + (N + 1).pow(2))].concat();
-            if kind.0 % 4 == 0 && kind.0 > 4 {
+            if kind.0.is_multiple_of(4) && kind.0 > 4 {
                 elements.push(cube);
             } else {
                 let round = [1, 2, 3, 7, 4, 5, 1];
@@ -234,7 +234,7 @@ fn tetrahedra_and_hexahedra() {
             let mut scenario = mesh.scenario();
             let stress = field.stress();
             let traction = |plane: usize| {
-                let sign = if plane % 2 == 0 { -1.0 } else { 1.0 };
+                let sign = if plane.is_multiple_of(2) { -1.0 } else { 1.0 };
                 let value = [0, 1, 2].map(|i| sign * stress[i][plane / 2]);
                 json!({ "traction": { "face": format!("m.{}", plane + 1), "value": value } })
             };
