@@ -206,10 +206,7 @@ impl Parametric {
     }
 
     /// Index of the candidate that leaves of those tied along column c.
-    fn choose(&mut self, c: usize, tied: &[Candidate]) -> usize {
-        if tied.len() > 1 {
-            self.stand.dictionary.settle_w();
-        }
+    fn choose(&self, c: usize, tied: &[Candidate]) -> usize {
         let names: Vec<Variable> = tied.iter().map(|row| self.stand.name(row)).collect();
         // The lexicographic rule asks for no rows of the tableau and draws nothing.
         let rows = self.stand.inverse_rows(c, tied, &|_| 0);
