@@ -93,7 +93,8 @@ impl Rules {
     /// # Errors
     /// Anything else than an even number from 4 to [`MOST_FACETS`].
     pub fn set_facets(&mut self, word: &str) -> Result<(), UnknownChoice> {
-        let facets = word.parse().ok().filter(|facets: &u16| (4..=MOST_FACETS).contains(facets) && facets.is_multiple_of(2));
+        let facets =
+            word.parse().ok().filter(|facets: &u16| (4..=MOST_FACETS).contains(facets) && facets.is_multiple_of(2));
         self.facets = facets.ok_or_else(|| UnknownChoice {
             what: "number of facets",
             word: word.into(),

@@ -250,7 +250,7 @@ fn wrong_probes_and_combinations_are_told_with_their_place() {
     let problems = |text: &str| load_text("t.json", text, None).expect_err("wrong").to_string();
     for (from, to, part) in [
         ("\"uy B\"", "\"uy C\"", "probes[\"tip sag\"]: no node `C`"),
-        ("\"uy B\"", "\"uz B\"", "unknown quantity `uz` (did you mean `rz` or `ux` or `uy`?)"),
+        ("\"uy B\"", "\"uz B\"", "`uz` is a quantity of space, and this structure lies in the plane"),
         ("\"uy B\"", "\"uy B, ux B\"", "a probe is one quantity, found 2"),
         ("\"uy B\"", "3", "probes[\"tip sag\"]: expected a string, found the number 3"),
         ("\"lift\"", "\"M\"", "a probe cannot be named \"M\": it is a quantity itself"),

@@ -2,6 +2,7 @@
 
 use super::words::{Internal, Meaning, OfStress, Over, STATES, WORDS, entry, pair_words};
 use super::{BarPlace, Names, Quantity, ResultantPart, fits};
+use crate::model::structure::Dimension;
 use crate::model::words::{did_you_mean_typed, no_such};
 
 /// Words that are no quantity.
@@ -90,11 +91,15 @@ fn read_words<'w>(
             Ok((quantity, rest))
         }
         Meaning::Node(which) => {
+            lies_there(entry.word, |dimension| which.is_of(dimension), names)?;
             let (node, rest) = argument(rest)?;
             known_place("node", &node, names, &[])?;
             Ok((Quantity::Node(which, node), rest))
         }
-        Meaning::Bar(which) => bar(which, rest, names, None),
+        Meaning::Bar(which) => {
+            lies_there(entry.word, |dimension| which.is_of(dimension), names)?;
+            bar(which, rest, names, None)
+        }
         Meaning::Stress(which) => {
             let (name, rest) = argument(rest)?;
             Ok((stress(which, name, names)?, rest))
@@ -153,6 +158,19 @@ fn stress(which: OfStress, name: String, names: &Names<'_>) -> Result<Quantity, 
             known_place("node or element", &name, names, &elements)?;
             Ok(Quantity::NodeStress(which, name))
         }
+    }
+}
+
+/// Refuses a quantity of space for a structure in the plane, and the other way round.
+fn lies_there(word: &str, is_of: impl Fn(Dimension) -> bool, names: &Names<'_>) -> Result<(), QuantityError> {
+    match names.structure.map(|structure| structure.dimension) {
+        Some(Dimension::Plane) if !is_of(Dimension::Plane) => {
+            error(format!("`{word}` is a quantity of space, and this structure lies in the plane"))
+        }
+        Some(Dimension::Space) if !is_of(Dimension::Space) => {
+            error(format!("`{word}` is a quantity of the plane, and this structure lies in space"))
+        }
+        _ => Ok(()),
     }
 }
 

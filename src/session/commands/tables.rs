@@ -11,7 +11,7 @@ use crate::export::json as json_export;
 use crate::model::quantity::displacement_words;
 use crate::model::scenario::Source;
 use crate::session::language::command::{Action, Command};
-use crate::session::language::selection::{Rows, displacement_keys, member_keys, no_pair, pair_keys, sort};
+use crate::session::language::selection::{Rows, displacement_keys, keys_there, member_keys, no_pair, pair_keys, sort};
 use crate::session::{CommandError, Next, Output, Session};
 use crate::text::number::short;
 use crate::view;
@@ -169,7 +169,8 @@ impl Session {
         words: &[String],
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let rows = Rows::read(words, "displacements", &displacement_keys())?;
+        let keys = keys_there(displacement_keys(), self.now.scenario.source.is_in_space());
+        let rows = Rows::read(words, "displacements", &keys)?;
         let answer = self.need_quantities()?;
         let all = self.quantity_displacements().ok_or_else(|| self.none("displacements", answer))?;
         let ids: Vec<&str> = all.iter().map(|node| node.node.as_str()).collect();
@@ -188,7 +189,8 @@ impl Session {
 
     /// `members [BARS] [sort KEY] [top N]`.
     pub(in crate::session) fn report_members(&self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
-        let rows = Rows::read(words, "members", &member_keys())?;
+        let keys = keys_there(member_keys(), self.now.scenario.source.is_in_space());
+        let rows = Rows::read(words, "members", &keys)?;
         let answer = self.need_quantities()?;
         let all = answer.members.as_ref().ok_or_else(|| self.none("member forces", answer))?;
         let bars: Vec<&str> = all.iter().map(|member| member.bar.as_str()).collect();

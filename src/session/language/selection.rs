@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use crate::answer::record::PairState;
-use crate::model::quantity::{Internal, displacement_words, fits, pair_words};
+use crate::model::quantity::{Internal, Meaning, displacement_words, entry, fits, pair_words};
+use crate::model::structure::Dimension;
 
 use crate::model::words::{did_you_mean_typed, no_such};
 use crate::session::CommandError;
@@ -11,6 +12,17 @@ use crate::session::CommandError;
 /// Keys of `displacements … sort KEY`, by magnitude; `u` is √(u_x² + u_y²).
 pub fn displacement_keys() -> Vec<&'static str> {
     ["u"].into_iter().chain(displacement_words().map(|(word, _)| word)).collect()
+}
+
+/// Those of the keys that a structure in the plane has, or one in space.
+pub fn keys_there(keys: Vec<&'static str>, is_in_space: bool) -> Vec<&'static str> {
+    let dimension = if is_in_space { Dimension::Space } else { Dimension::Plane };
+    let there = |key: &&str| match entry(key).map(|entry| &entry.meaning) {
+        Some(Meaning::Node(which)) => which.is_of(dimension),
+        Some(Meaning::Bar(which)) => which.is_of(dimension),
+        _ => true,
+    };
+    keys.into_iter().filter(there).collect()
 }
 
 /// Keys of `members … sort KEY`, by the largest magnitude along an element.

@@ -54,8 +54,7 @@ fn settle(builder: &mut Builder<'_>) {
         let cases = &mut builder.structure.load_cases;
         if let Some(known) = cases.iter_mut().find(|known| known.name == name) {
             known.loads.push(Load::Settlement { node, component, value });
-        } else if !builder.broken.contains(name)
-            && reported.is_none_or(|last| last.value.start() != case.value.start())
+        } else if !builder.broken.contains(name) && reported.is_none_or(|last| last.value.start() != case.value.start())
         {
             let known: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
             case.unknown("load case", name, &known);
