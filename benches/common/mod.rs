@@ -1,5 +1,6 @@
 //! Contact problems for measurements, generated: two plates on one another, the lower one fixed along its base.
 
+#[allow(dead_code)] // the examples take their own part of what stands here
 pub mod block;
 
 use stickslip::contact::problem::ContactProblem;
