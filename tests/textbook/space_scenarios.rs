@@ -177,3 +177,30 @@ fn a_pipe_loop_is_symmetric_and_carries_its_weight() {
         near("across", across + sum("fy"), 0.0, 1e-9, 40.0);
     }
 }
+
+/// The slider as a contact system: λ_τ = k z_τ − F. `dimension` may say what the tangents say.
+#[test]
+fn a_contact_system_in_space_may_say_its_dimension() {
+    let given = |dimension: Option<i32>, tangents: Option<i32>| {
+        let mut system = json!({
+            "pairs": ["slider"], "stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "friction": [0.1],
+            "loads": { "all": { "vector": [20, -3, -4] } },
+        });
+        let mut file = json!({});
+        if let Some(tangents) = tangents {
+            system["tangents"] = json!(tangents);
+        }
+        if let Some(dimension) = dimension {
+            file["dimension"] = json!(dimension);
+        }
+        file["contact_system"] = system;
+        file
+    };
+    for (dimension, tangents) in [(None, Some(2)), (Some(3), Some(2)), (Some(3), None)] {
+        let mut session = read(&scenario_text(given(dimension, tangents)));
+        is_answered(&mut session, "slider");
+        let [along, across] = vector(&told(&mut session, "pairs")[0]["z_t"]);
+        near("z_τ1", along, 1.8, 1e-12, 1.0);
+        near("z_τ2", across, 2.4, 1e-12, 1.0);
+    }
+}

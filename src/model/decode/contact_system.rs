@@ -10,6 +10,7 @@ use super::matrix_file;
 use super::matrix_market::Size;
 use super::reader::{Cursor, Fields};
 use super::words::{counted, is_id, quoted};
+use crate::model::dimension::Dimension;
 use crate::model::memory;
 use crate::model::pair::{Law, LawKind};
 use crate::model::parameter::Number;
@@ -47,7 +48,11 @@ pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSyste
     // Everything else is measured by the number of pairs.
     let pairs = pairs?;
     let count = pairs.len();
-    let tangents = fields.optional("tangents").map_or(Some(1), tangents)?;
+    let in_space = fields.cursor().dimension() == Dimension::Space;
+    let tangents = match fields.optional("tangents") {
+        Some(at) => tangents(at, in_space)?,
+        None => 1 + usize::from(in_space),
+    };
     let order = Size::OfPairs { pairs: count, tangents }.order();
     let positions = match fields.optional("positions") {
         Some(cursor) => Some(cursor.numbers(count, "one per pair")?),
@@ -73,9 +78,13 @@ pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSyste
     Some(GivenContactSystem { pairs, tangents, positions, matrix: matrix?, loads: loads?, laws: laws?, kernel })
 }
 
-/// Tangential joints a pair.
-fn tangents(cursor: Cursor<'_>) -> Option<usize> {
+/// Tangential joints a pair; two where the file says that it lies in space.
+fn tangents(cursor: Cursor<'_>, in_space: bool) -> Option<usize> {
     let found = cursor.whole("number of tangents", 1)?;
+    if found < 2 && in_space {
+        cursor.problem("a pair in space has 2 tangents, and `dimension` is 3", "write 2, or leave `dimension` out");
+        return None;
+    }
     if found > 2 {
         cursor.problem(
             format!("a pair cannot have {found} tangents"),

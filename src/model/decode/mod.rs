@@ -240,12 +240,8 @@ fn format(fields: &Fields<'_>) {
 /// Whether points and vectors have two numbers or three.
 fn read_dimension(fields: &Fields<'_>) {
     let Some(cursor) = fields.optional("dimension") else { return };
-    if let Some(other) = OTHER_SOURCES.into_iter().find_map(|key| fields.entry(key)) {
-        let what = if other.name() == "lcp" { "an lcp" } else { "a contact system" };
-        cursor.problem(
-            format!("`dimension` is that of a structure, and this is {what}"),
-            "remove it; a contact system in space has \"tangents\": 2",
-        );
+    if OTHER_SOURCES.into_iter().find_map(|key| fields.entry(key)).is_some_and(|other| other.name() == "lcp") {
+        cursor.problem("`dimension` is that of a structure or of a contact system, and this is an lcp", "remove it");
         return;
     }
     match cursor.whole("dimension", 2) {

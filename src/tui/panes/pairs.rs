@@ -141,7 +141,9 @@ pub fn about(state: &State) -> Option<String> {
         text.push_str(&format!(" · z_n {}", d(pair.z_n)));
     }
     text.push_str(&format!(" · z_τ {}", d(pair.z_t)));
-    if pair.law.has_tangential_joint() {
+    if pair.space.is_some() {
+        text.push_str(&format!(" · reserve {}", short(pair.reserve())));
+    } else if pair.law.has_tangential_joint() {
         text.push_str(&format!(" · reserves x⁺ {} x⁻ {}", short(pair.reserve_plus), short(pair.reserve_minus)));
     }
     Some(text)
