@@ -235,7 +235,7 @@ mod tests {
         assert_eq!(at_end("find least p"), ["pull"]);
         assert_eq!(at_end("find f 0..1 w"), ["where"]);
         assert_eq!(at_end("find f where x_n "), ["c1", "c2", "joint[0]"]);
-        assert_eq!(at_end("find f where state c1 = slip"), ["slip+", "slip-"]);
+        assert_eq!(at_end("find f where state c1 = slip"), ["slip", "slip+", "slip-"]);
         assert_eq!(at_end("envelope x_n c1 over p"), ["pull"]);
         assert_eq!(at_end("trace pull t"), ["to"]);
         assert_eq!(at_end("plot path fo"), ["force"]);
