@@ -241,7 +241,7 @@ mod tests {
         assert_eq!(at_end("plot path fo"), ["force"]);
         assert_eq!(at_end("load beam-r"), ["beam-ray"]);
         assert_eq!(at_end("set f 0.3; wh"), ["why"]);
-        assert_eq!(at_end("reset co"), ["covering"]);
+        assert_eq!(at_end("reset co"), ["cone", "covering"]);
         assert!(at_end("pairs # c").is_empty());
         assert!(at_end("echo \"pa").is_empty());
         assert!(at_end("bogus c").is_empty());
