@@ -19,6 +19,10 @@ pub fn cause(pair: &PairState, units: &Units) -> String {
         State::Closed => {
             format!("it is pressed together with x_n = {}, and without friction x_t = 0", force(pair.x_n))
         }
+        State::Stick if pair.space.is_some() && pair.reserve() < 0.0 => format!(
+            "between two facets of the polygon it is held beyond Coulomb's bound {bound}: its friction force |x_t| = {}",
+            force(x_t)
+        ),
         State::Stick if pair.space.is_some() => format!(
             "its friction force |x_t| = {} does not exceed the bound {bound}; its reserve is {}",
             force(x_t),
@@ -48,5 +52,39 @@ pub fn cause(pair: &PairState, units: &Units) -> String {
             force(x_t),
             length(-pair.z_t)
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::answer::pair_record::InSpace;
+    use crate::model::pair::LawKind;
+
+    /// bound 10: a force of 9 is within it; one of 10.5 is held by a polygon of 8 facets only, whose corners lie at
+    /// 10/cos 22.5° = 10.82.
+    #[test]
+    fn a_pair_that_the_polygon_holds_is_not_said_to_be_within_the_bound() {
+        let held = |x_t: f64| {
+            let pair = PairState {
+                id: "c".to_owned(),
+                law: LawKind::Coulomb,
+                state: State::Stick,
+                held: None,
+                x_n: 10.0,
+                x_t,
+                z_n: 0.0,
+                z_t: 0.0,
+                bound: 10.0,
+                reserve_plus: 10.0 + x_t,
+                reserve_minus: 10.0 - x_t,
+                position: None,
+                joint: 0,
+                space: Some(InSpace { x_t: [x_t, 0.0], z_t: [0.0; 2], frame: None }),
+            };
+            cause(&pair, &Units::default())
+        };
+        assert!(held(9.0).contains("|x_t| = 9 does not exceed the bound 10"), "{}", held(9.0));
+        assert!(held(10.5).contains("held beyond Coulomb's bound 10"), "{}", held(10.5));
     }
 }

@@ -382,7 +382,9 @@ fn friction_polygon(polygon: &PolygonRecord) -> String {
     if polygon.turn != 0.0 {
         text += &format!(" turned by {}", degrees(polygon.turn));
     }
-    if let (Some(steps), Some(distance)) = (polygon.newton, polygon.distance) {
+    if polygon.newton == Some(0) {
+        text += ": its answer stands on Coulomb's cone";
+    } else if let (Some(steps), Some(distance)) = (polygon.newton, polygon.distance) {
         let word = if steps == 1 { "step" } else { "steps" };
         text += &format!(
             " · on Coulomb's cone after {steps} Newton {word}, which moved slips by up to {} % of the largest",
