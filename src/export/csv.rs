@@ -17,63 +17,28 @@ enum Field<'a> {
 /// Writes the pairs.
 pub fn pairs(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     use Field::{Empty, Number, Text};
-    if answer.pairs.iter().any(|pair| pair.space.is_some()) {
-        return pairs_in_space(out, answer);
-    }
-    head(out, "id,law,state,held,x_n,x_t,z_n,z_t,bound,reserve_plus,reserve_minus,x,y")?;
+    let is_in_space = answer.pairs.iter().any(|pair| pair.space.is_some());
+    head(
+        out,
+        match is_in_space {
+            true => "id,law,state,held,x_n,x_t1,x_t2,z_n,z_t1,z_t2,direction,bound,reserve,x,y,z",
+            false => "id,law,state,held,x_n,x_t,z_n,z_t,bound,reserve_plus,reserve_minus,x,y",
+        },
+    )?;
+    let vector = |components: Vec<f64>| components.into_iter().map(Number).collect::<Vec<_>>();
     for pair in &answer.pairs {
-        let place = |i: usize| pair.position.map_or(Empty, |at| Number(at[i]));
-        row(
-            out,
-            &[
-                Text(&pair.id),
-                Text(pair.law.word()),
-                Text(pair.state.word()),
-                pair.held.map_or(Empty, |held| Text(held.word())),
-                Number(pair.x_n),
-                Number(pair.x_t),
-                Number(pair.z_n),
-                Number(pair.z_t),
-                Number(pair.bound),
-                Number(pair.reserve_plus),
-                Number(pair.reserve_minus),
-                place(0),
-                place(1),
-            ],
-        )?;
-    }
-    Ok(())
-}
-
-/// The same in space.
-fn pairs_in_space(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
-    use Field::{Empty, Number, Text};
-    head(out, "id,law,state,held,x_n,x_t1,x_t2,z_n,z_t1,z_t2,direction,bound,reserve,x,y,z")?;
-    for pair in &answer.pairs {
-        let place = |i: usize| pair.position.map_or(Empty, |at| Number(at[i]));
-        let (friction, slip) = (pair.friction(), pair.slip());
-        let along = |vector: &[f64], t: usize| vector.get(t).map_or(Empty, |value| Number(*value));
-        row(
-            out,
-            &[
-                Text(&pair.id),
-                Text(pair.law.word()),
-                Text(pair.state.word()),
-                pair.held.map_or(Empty, |held| Text(held.word())),
-                Number(pair.x_n),
-                along(&friction, 0),
-                along(&friction, 1),
-                Number(pair.z_n),
-                along(&slip, 0),
-                along(&slip, 1),
-                pair.direction().map_or(Empty, Number),
-                Number(pair.bound),
-                Number(pair.reserve()),
-                place(0),
-                place(1),
-                place(2),
-            ],
-        )?;
+        let held = pair.held.map_or(Empty, |held| Text(held.word()));
+        let mut fields = vec![Text(&pair.id), Text(pair.law.word()), Text(pair.state.word()), held, Number(pair.x_n)];
+        fields.extend(vector(pair.friction()));
+        fields.push(Number(pair.z_n));
+        fields.extend(vector(pair.slip()));
+        fields.extend(match is_in_space {
+            true => [pair.direction().map_or(Empty, Number), Number(pair.bound), Number(pair.reserve())],
+            false => [Number(pair.bound), Number(pair.reserve_plus), Number(pair.reserve_minus)],
+        });
+        let place = |axis: usize| pair.position.map_or(Empty, |at| Number(at[axis]));
+        fields.extend((0..if is_in_space { 3 } else { 2 }).map(place));
+        row(out, &fields)?;
     }
     Ok(())
 }
