@@ -155,6 +155,9 @@ impl Sweep<'_> {
         }
         let rules = self.case.rules;
         hash = hash.and(format!("{} {} {}", rules.covering, rules.tie_break, rules.engine).as_bytes());
+        if self.case.scenario.source.is_in_space() {
+            hash = hash.and(format!("{} {}", rules.facets, rules.cone).as_bytes());
+        }
         Header {
             format: FORMAT.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -104,7 +104,7 @@ impl Prepared {
                 attempt_plain(&problem, problem.rules(rules), watch)
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
-                let problem = contact_problem(system, factors, values);
+                let problem = contact_problem(system, factors, values).under(rules);
                 self.attempt_contact(&problem, (rules, Extent::Whole), watch)
             }
         }

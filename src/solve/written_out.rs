@@ -7,22 +7,22 @@ use crate::contact::rows::rows;
 use crate::lcp::problem::Lcp;
 use crate::lcp::variable::Variable;
 use crate::model::parameter::ParameterValues;
-use crate::model::rules::Covering;
+use crate::model::rules::{Covering, Rules};
 use crate::solve::engines::written_out;
 use crate::solve::prepared::{Geometry, Prepared};
 use crate::solve::problem::{contact_problem, factors};
 
 impl Prepared {
-    /// The LCP in the scenario's units (forces w, q; displacements z) and the names of its rows. The covering of a bare
-    /// LCP is its own.
-    pub fn written_lcp(&self, values: &ParameterValues, covering: Covering) -> (Lcp<f64>, Vec<String>) {
+    /// The LCP in the scenario's units (forces w, q; displacements z) and the names of its rows, with the covering
+    /// and in space the friction polygon of these rules. The covering of a bare LCP is its own.
+    pub fn written_lcp(&self, values: &ParameterValues, rules: Rules) -> (Lcp<f64>, Vec<String>) {
         match &*self.geometry {
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => {
-                let problem = contact_problem(system, &factors(self, values), values);
+                let problem = contact_problem(system, &factors(self, values), values).under(rules);
                 if system.force_form.is_some() {
-                    return written_in_force_form(&problem, covering);
+                    return written_in_force_form(&problem, rules.covering);
                 }
-                let lcp = full_lcp(&problem, covering);
+                let lcp = full_lcp(&problem, rules.covering);
                 let names = rows(system, problem.polygon).iter().map(|row| row.name('x', system)).collect();
                 (lcp, names)
             }
@@ -67,7 +67,7 @@ mod tests {
             let loaded = embedded::load(name).expect("embedded");
             let values = loaded.parameter_values();
             let prepared = prepare(&loaded, &Quiet).expect("prepared");
-            let (lcp, names) = prepared.written_lcp(&values, loaded.rules.covering);
+            let (lcp, names) = prepared.written_lcp(&values, loaded.rules);
             let text = scenario(&lcp, &names, name).to_string();
             let exported = load_text("exported", &text, None).expect("a scenario");
             let again = prepare(&exported, &Quiet).expect("prepared");

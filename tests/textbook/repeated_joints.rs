@@ -464,7 +464,7 @@ fn the_written_lcp_holds_at_the_answer() {
         for (name, value) in set {
             values.insert(name.to_owned(), value).expect("a parameter");
         }
-        let (lcp, names) = case.prepared.written_lcp(&values, Covering::Cohesive);
+        let (lcp, names) = case.prepared.written_lcp(&values, Rules::default());
         let mut exchanged = 0;
         let (w, z): (Vec<f64>, Vec<f64>) = names
             .iter()

@@ -12,11 +12,12 @@ impl Session {
         let Some(prepared) = &self.now.prepared else {
             return refused("nothing is solved yet: `solve` first".into());
         };
-        let covering = self.now.rules.covering;
-        let (lcp, names) = prepared.written_lcp(&self.now.values, covering);
+        let rules = self.now.rules;
+        let (lcp, names) = prepared.written_lcp(&self.now.values, rules);
         if lcp.covering.iter().any(|d| *d <= 0.0) {
             return refused(format!(
-                "covering {covering} is 0 in a row without friction, and an lcp needs d > 0: `set covering cohesive` first"
+                "covering {} is 0 in a row without friction, and an lcp needs d > 0: `set covering cohesive` first",
+                rules.covering
             ));
         }
         let scenario = &self.now.scenario;
