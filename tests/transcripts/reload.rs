@@ -56,6 +56,26 @@ fn what_was_set_is_kept_where_it_fits_and_the_rest_is_told() {
     assert_eq!(value(&session, "f"), 0.75);
 }
 
+/// The rules of the polygon are kept like all others, and dropped where the problem is none in space any more.
+#[test]
+fn rules_of_space_are_kept_in_space() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.json");
+    let text = |title: &str| stickslip::model::embedded::load("block-3d").unwrap().text.replace("\"title\": \"", title);
+    fs::write(&path, text("\"title\": \"One ")).unwrap();
+    let mut session = Session::new(load_file(&path).unwrap(), &Quiet).unwrap();
+    told(&mut session, "set facets 16; set cone off").unwrap();
+    fs::write(&path, text("\"title\": \"Another ")).unwrap();
+    let said = told(&mut session, "reload").unwrap();
+    assert!(said.contains("kept: facets 16, cone off"), "{said}");
+    let rules = session.rules();
+    assert_eq!((rules.facets, rules.cone), (16, false));
+    assert!(told(&mut session, "set nothing 1").unwrap_err().contains("engine, facets, cone and auto"));
+    write(&path, r#""L": 2, "F": 5, "f": 0.5"#, "f");
+    let said = told(&mut session, "reload").unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("facets 16 (it is for problems in space); cone off (it is for problems in space)"), "{said}");
+}
+
 #[test]
 fn values_that_make_the_new_text_invalid_give_way_to_its_own() {
     let folder = tempfile::tempdir().unwrap();

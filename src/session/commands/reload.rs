@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 use crate::model::load::at_values;
 use crate::model::scenario::{Scenario, Source};
 use crate::session::language::command::{Action, Command};
+use crate::session::language::setting::{RULES, rules_of};
 use crate::session::language::tokens;
 use crate::session::{CommandError, Next, Output, Session, Setup, load};
 use crate::text::number::short;
@@ -208,22 +209,23 @@ impl Carried {
     }
 
     fn keep_rules(&mut self, now: &Setup) {
-        let (old, was, rules) = (now.scenario.rules, now.rules, &mut self.setup.rules);
-        if was.covering != old.covering {
-            if matches!(self.setup.scenario.source, Source::Lcp(_)) {
-                self.dropped.push(format!("covering {} (a bare LCP has its own)", was.covering));
-            } else {
-                rules.covering = was.covering;
-                self.kept.push(format!("covering {}", was.covering));
+        for rule in &RULES {
+            let was = (rule.shown)(&now.rules);
+            if was == (rule.shown)(&now.scenario.rules) {
+                continue;
             }
-        }
-        if was.tie_break != old.tie_break {
-            rules.tie_break = was.tie_break;
-            self.kept.push(format!("tie-break {}", was.tie_break));
-        }
-        if was.engine != old.engine {
-            rules.engine = was.engine;
-            self.kept.push(format!("engine {}", was.engine));
+            let said = format!("{} {was}", rule.name);
+            let scenario = &self.setup.scenario;
+            let misfit = match rule.name {
+                "covering" if matches!(scenario.source, Source::Lcp(_)) => Some("a bare LCP has its own"),
+                name if rules_of(scenario).all(|known| known.name != name) => Some("it is for problems in space"),
+                _ => None,
+            };
+            match misfit {
+                Some(why) => self.dropped.push(format!("{said} ({why})")),
+                None if (rule.set)(&mut self.setup.rules, &was).is_ok() => self.kept.push(said),
+                None => {}
+            }
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::model::rules::{Rules, UnknownChoice};
 use crate::model::scenario::{Scenario, Source};
 
 use crate::model::words::did_you_mean_typed;
+use crate::text::words::list;
 
 /// A `set` that cannot be done.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -18,9 +19,7 @@ pub enum SetError {
         name: String,
     },
     /// No such parameter.
-    #[error(
-        "unknown parameter `{name}`{near}: the scenario has {known}; rules are covering, tie-break, engine and auto"
-    )]
+    #[error("unknown parameter `{name}`{near}: the scenario has {known}; rules are {rules}")]
     UnknownParameter {
         /// The name.
         name: String,
@@ -28,6 +27,8 @@ pub enum SetError {
         near: String,
         /// What there is.
         known: String,
+        /// The rules that do something in it.
+        rules: String,
     },
     /// No number.
     #[error(
@@ -182,14 +183,15 @@ pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> 
 /// The error for a name that is no parameter.
 pub fn unknown_parameter(name: &str, scenario: &Scenario) -> SetError {
     let names: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
-    let rules = rules_of(scenario).map(|rule| rule.name).chain(["auto"]);
+    let rules: Vec<&str> = rules_of(scenario).map(|rule| rule.name).chain(["auto"]).collect();
     SetError::UnknownParameter {
         name: name.to_owned(),
-        near: did_you_mean_typed(name, names.iter().copied().chain(rules)),
+        near: did_you_mean_typed(name, names.iter().chain(&rules).copied()),
         known: match names.len() {
             0 => "none".to_owned(),
             _ => names.join(", "),
         },
+        rules: list(&rules.iter().map(ToString::to_string).collect::<Vec<_>>()),
     }
 }
 
