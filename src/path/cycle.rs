@@ -4,7 +4,7 @@
 //! open, not on the slips committed before: where both come back after a cycle, every further cycle is the same.
 
 use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until};
-use super::start::{PathError, in_the_plane};
+use super::start::{PathError, plane_system};
 use super::static_shakedown::{Static, static_limit, static_shakedown};
 use crate::answer::record::{PairState, Ray};
 use crate::contact::problem::ContactProblem;
@@ -204,7 +204,6 @@ impl Sizes {
 /// # Errors
 /// A name that is no load, a bare LCP, slips that cannot be, a history that breaks down; see [`PathError`].
 pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize, begin: &Begin) -> Result<Cycle, PathError> {
-    in_the_plane(case.prepared, "cycle")?;
     let found = followed(case, name, ends, most, begin)?;
     let every_start = match found.kind {
         Kind::ShakesDown | Kind::Undecided => {
@@ -224,7 +223,7 @@ pub(super) fn followed(
     most: usize,
     begin: &Begin,
 ) -> Result<Cycle, PathError> {
-    let system = case.prepared.system().ok_or(PathError::Plain("cycle"))?;
+    let system = plane_system(case.prepared, "cycle")?;
     let [a, b] = ends;
     let softest = softest(system);
     let (start, turned) = (target(case, name, a)?, target(case, name, b)?);
@@ -391,7 +390,6 @@ pub struct ShakedownLimit {
 /// # Errors
 /// As [`cycle`].
 pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> Result<ShakedownLimit, PathError> {
-    in_the_plane(case.prepared, "cycle")?;
     let kind = |to: f64| followed(case, name, [from, to], MOST, &Begin::Unloaded).map(|found| found.kind);
     let (mut good, mut bad) = (from, None);
     let mut to = first;

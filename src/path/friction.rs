@@ -12,7 +12,7 @@ use std::sync::Arc;
 use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
 use super::rate::{place_beside_laws, problem_rates, rate, rate_lcp};
-use super::start::{PathError, cold, final_basis, in_the_plane, state_of};
+use super::start::{PathError, cold, final_basis, plane_system, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
 use crate::contact::lcp::contact_lcp;
@@ -143,8 +143,7 @@ struct Onward {
 /// See [`PathError`].
 pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, to: f64) -> Result<FrictionPath, PathError> {
     let Case { scenario, prepared, values, .. } = case;
-    in_the_plane(prepared, "trace")?;
-    let system = prepared.system().ok_or(PathError::Plain("trace"))?;
+    let system = plane_system(prepared, "trace")?;
     let mixed = |why: String| PathError::Mixed { name: name.to_owned(), why };
     if let Some(why) = place_beside_laws(scenario, name) {
         return Err(mixed(why));

@@ -8,7 +8,7 @@ use nalgebra::DVector;
 use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
 use super::load_parameter::LoadParameter;
-use super::start::{PIVOTS, PathError, cold, final_basis, in_the_plane, state_of};
+use super::start::{PIVOTS, PathError, cold, final_basis, plane_system, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
 use crate::contact::load_path::{is_answer, path_lcp};
@@ -69,11 +69,10 @@ pub struct LoadReach {
 /// # Errors
 /// See [`PathError`].
 pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadReach) -> Result<LoadPath, PathError> {
-    in_the_plane(case.prepared, "trace")?;
     let (parameter, grown) = LoadParameter::find(case, name)?;
     let Case { values, watch, .. } = case;
     let prepared = grown.as_deref().unwrap_or(case.prepared);
-    let system = prepared.system().ok_or(PathError::Plain("trace"))?;
+    let system = plane_system(prepared, "trace")?;
     if let Some(to) = reach.to
         && !to.is_finite()
         && to != f64::NEG_INFINITY

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::rate::{fixed_place, problem_rates, rate, rate_lcp, with_friction_as_cohesion};
-use super::start::{PathError, final_basis, in_the_plane, state_of};
+use super::start::{PathError, final_basis, plane_system, state_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::PairState;
 use crate::contact::force_form::unknowns;
@@ -59,8 +59,7 @@ pub struct Sensitivity {
 /// Where there is no answer, or a bare LCP.
 pub fn sensitivity(case: Case<'_>, solved: &Solved) -> Result<Sensitivity, PathError> {
     let Case { scenario, prepared, values, .. } = case;
-    in_the_plane(prepared, "sensitivity")?;
-    let system = prepared.system().ok_or(PathError::Plain("sensitivity"))?;
+    let system = plane_system(prepared, "sensitivity")?;
     let (RunData::Contact { contact, problem, .. }, Some(basis)) = (&solved.run, final_basis(solved)) else {
         return Err(PathError::Missing("there is no answer whose derivatives could be taken".to_owned()));
     };

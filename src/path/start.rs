@@ -1,9 +1,12 @@
 //! Where a path starts, and why it cannot.
 
+use std::sync::Arc;
+
 use crate::answer::pairs::{JointState, joint_state};
 use crate::contact::lcp::contact_lcp;
 use crate::contact::load_path::is_answer;
 use crate::contact::problem::ContactProblem;
+use crate::contact::system::ContactSystem;
 use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
@@ -19,15 +22,16 @@ use crate::watch::Watch;
 /// No path makes more pivots than this.
 pub const PIVOTS: usize = 100_000;
 
-/// Refuses what knows two senses of slip only.
+/// The contact system, for a command that knows two senses of slip only.
 ///
 /// # Errors
-/// In space.
-pub(super) fn in_the_plane(prepared: &Prepared, command: &str) -> Result<(), PathError> {
-    prepared
-        .system()
-        .and_then(|system| system.space_refusal(command))
-        .map_or(Ok(()), |why| Err(PathError::Missing(why)))
+/// A bare LCP; in space.
+pub(super) fn plane_system<'a>(
+    prepared: &'a Prepared,
+    command: &'static str,
+) -> Result<&'a Arc<ContactSystem>, PathError> {
+    let system = prepared.system().ok_or(PathError::Plain(command))?;
+    system.space_refusal(command).map_or(Ok(system), |why| Err(PathError::Missing(why)))
 }
 
 /// Why a path cannot be followed. Its own end (turning point, limit) is no error.

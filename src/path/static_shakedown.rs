@@ -9,7 +9,7 @@ use nalgebra::DVector;
 
 use super::cycle::target;
 use super::stages::{Begin, Moment, follow_factors};
-use super::start::{PathError, in_the_plane};
+use super::start::{PathError, plane_system};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
@@ -195,7 +195,7 @@ pub fn static_shakedown<'m>(case: Case<'_>, moments: impl Iterator<Item = &'m Mo
 /// # Errors
 /// See [`super::cycle::cycle`].
 pub fn static_limit(case: Case<'_>, name: &str, [from, to]: [f64; 2]) -> Result<(Option<f64>, Static), PathError> {
-    in_the_plane(case.prepared, "cycle")?;
+    plane_system(case.prepared, "cycle")?;
     let Some(problem) = present(case) else { return Ok((None, Static::NotAsked)) };
     if let Some(refusal) = refusal(&problem) {
         return Ok((None, refusal));

@@ -4,7 +4,7 @@ use super::change::Breakpoint;
 use super::end::PathEnd;
 use super::friction::{self, FrictionPath, is_friction};
 use super::load::{self, LoadPath, LoadReach};
-use super::start::{PathError, in_the_plane};
+use super::start::PathError;
 use crate::solve::{Case, Solved};
 
 /// A path in one direction.
@@ -20,7 +20,6 @@ impl Way {
     /// # Errors
     /// See [`PathError`].
     pub fn follow(case: Case<'_>, solved: &Solved, name: &str, target: f64) -> Result<Way, PathError> {
-        in_the_plane(case.prepared, "trace")?;
         if is_friction(case, name) {
             let path = friction::trace(case, Some(solved), name, target)?;
             return Ok(Way::Friction(Box::new(path)));

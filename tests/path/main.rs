@@ -16,6 +16,7 @@ mod map;
 mod prove;
 mod random;
 mod results;
+mod rules_in_space;
 mod sample;
 mod session;
 mod stages;

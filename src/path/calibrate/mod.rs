@@ -12,7 +12,7 @@ mod model;
 
 use nalgebra::DMatrix;
 
-use super::start::{PathError, in_the_plane};
+use super::start::{PathError, plane_system};
 use crate::answer::record::{PairState, State};
 use crate::model::jet::Dependence;
 use crate::model::measurement::Measurement;
@@ -107,10 +107,7 @@ pub fn calibrate(
     measured: &[Measurement],
     history: bool,
 ) -> Result<Calibration, PathError> {
-    if case.prepared.system().is_none() {
-        return Err(PathError::Plain("calibrate"));
-    }
-    in_the_plane(case.prepared, "calibrate")?;
+    plane_system(case.prepared, "calibrate")?;
     if measured.len() < groups.len() {
         return Err(PathError::Missing(format!(
             "calibrate: {} cannot tell {} frictions; measure at least as many quantities, or name fewer",

@@ -17,7 +17,7 @@ use self::panel::Cutter;
 use super::envelope::Axis;
 use super::quantity::{Facts, Value};
 use super::route::Route;
-use super::start::{PathError, in_the_plane};
+use super::start::{PathError, plane_system};
 use crate::answer::record::{RayClass, State, Verdict};
 use crate::model::groups::Groups;
 use crate::model::quantity::Quantity;
@@ -115,10 +115,7 @@ impl Map {
 /// # Errors
 /// Axes that cannot be varied, an interruption; see [`PathError`].
 pub fn map(case: Case<'_>, axes: [Axis; 2], quantity: Option<&Quantity>) -> Result<Map, PathError> {
-    if case.prepared.system().is_none() {
-        return Err(PathError::Plain("map"));
-    }
-    in_the_plane(case.prepared, "map")?;
+    plane_system(case.prepared, "map")?;
     let along = along(case, &axes)?;
     let across = &axes[1 - along];
     let lines = Lines { case, along: &axes[along].name, range: axes[along].range, across: &across.name };

@@ -28,7 +28,7 @@ use std::time::Instant;
 use standing::Laws;
 use walk::Walk;
 
-use super::start::{PathError, in_the_plane};
+use super::start::{PathError, plane_system};
 use crate::solve::Case;
 use crate::solve::problem::{contact_problem, factors};
 
@@ -78,6 +78,16 @@ pub fn follow_factors(case: Case<'_>, begin: &Begin, targets: &[Vec<f64>]) -> Re
     follow_until(case, begin, targets, &mut |_| false)
 }
 
+/// What goes in space.
+fn with_way_out(refusal: PathError) -> PathError {
+    match refusal {
+        PathError::Missing(why) => PathError::Missing(format!(
+            "{why}; `solve` takes all its loads at once (`stickslip solve --at-once` in the shell)"
+        )),
+        other => other,
+    }
+}
+
 /// The same, up to the stage after which those that were followed are `enough`.
 ///
 /// # Errors
@@ -89,8 +99,7 @@ pub(super) fn follow_until(
     enough: &mut dyn FnMut(&[StageResult]) -> bool,
 ) -> Result<History, PathError> {
     let Case { prepared, values, watch, .. } = case;
-    in_the_plane(prepared, "stages")?;
-    let system = prepared.system().ok_or(PathError::Plain("stages"))?;
+    let system = plane_system(prepared, "stages").map_err(with_way_out)?;
     let none = vec![0.0; prepared.cases.len()];
     let problem = contact_problem(system, &none, values);
     let start = Instant::now();
