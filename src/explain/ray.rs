@@ -172,7 +172,7 @@ pub fn certify_ray(report: &mut RayReport, problem: &ContactProblem, built: Buil
     if report.certificate.is_some() {
         return true;
     }
-    if !matches!(report.class, RayClass::Mechanism | RayClass::NoEquilibrium) {
+    if !report.moves() {
         return false;
     }
     let search = certify(problem, &FreeMotions::new(&problem.system, built));
@@ -188,7 +188,7 @@ pub fn certify_ray(report: &mut RayReport, problem: &ContactProblem, built: Buil
 
 /// Adds what the words need: the motions of the structure, and whether balanced forces exist where nothing is proved.
 pub fn explain(report: &mut RayReport, problem: &ContactProblem, built: Built<'_>) {
-    if !matches!(report.class, RayClass::Mechanism | RayClass::NoEquilibrium) {
+    if !report.moves() {
         return;
     }
     let of_structure = |direction: &DVector<f64>| built.and_then(|(structure, main)| mode(structure, main, direction));
@@ -241,6 +241,23 @@ impl RayReport {
             out_of_time: false,
             certificate_mode: None,
             balanced: false,
+        }
+    }
+
+    /// Whether it is a motion, of which a certificate may exist.
+    fn moves(&self) -> bool {
+        matches!(self.class, RayClass::Mechanism | RayClass::NoEquilibrium)
+    }
+
+    /// Whether the search for a certificate ran out of time, where it found none.
+    pub fn in_vain(&self) -> Option<bool> {
+        (self.verdict == Some(Verdict::Undecided)).then_some(self.out_of_time)
+    }
+
+    /// Takes over that the search for a certificate was in vain.
+    pub fn leave_undecided(&mut self, out_of_time: bool) {
+        if self.moves() {
+            (self.verdict, self.out_of_time) = (Some(Verdict::Undecided), out_of_time);
         }
     }
 

@@ -50,9 +50,7 @@ impl Run {
         let solved = case.solve_pairs()?;
         let ray = solved.ray.as_ref();
         let (class, verdict) = (ray.map(|ray| ray.class), ray.and_then(|ray| ray.verdict));
-        let reached = !case.rules.cone || solved.answer.polygon.is_none_or(|polygon| polygon.cone);
-        let stands = solved.answer.is_answer() && reached;
-        Ok(Run { value, outcome: solved.answer.outcome, class, verdict, stands })
+        Ok(Run { value, outcome: solved.answer.outcome, class, verdict, stands: solved.stands(case.rules.cone) })
     }
 
     pub(super) fn is_answer(&self) -> bool {

@@ -63,7 +63,7 @@ impl Prepared {
         let problem = contact_problem(system, &factors(self, values), values).under(rules);
         let job = Job { prepared: self, problem: &problem, rules, watch };
         let mut solved = self.attempt_contact(&problem, (rules, extent), watch)?;
-        if solved.answer.is_answer() && (!system.is_in_space() || super::space::is_final(&solved, &problem)) {
+        if solved.stands(rules.cone) {
             return Ok(solved);
         }
         let certified = match solved.ray.as_mut() {

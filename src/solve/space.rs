@@ -34,11 +34,6 @@ fn polygons(facets: u16, pairs: usize) -> Vec<Polygon> {
     all.into_iter().skip(1).collect()
 }
 
-/// Whether a result needs no other polygon: on the cone, or proved to have no answer there.
-pub(super) fn is_final(solved: &Solved, problem: &ContactProblem) -> bool {
-    solved.answer.is_answer() && (!problem.cone || solved.answer.polygon.is_some_and(|polygon| polygon.cone))
-}
-
 impl Prepared {
     /// What the run on the first polygon leaves open, under the default rules of covering and ties.
     pub(super) fn retry_in_space(
@@ -52,21 +47,33 @@ impl Prepared {
         // counts no more where the finer ones have none: friction beyond Coulomb's bound held it.
         let mut on_polygon = first.answer.is_answer().then(|| first.clone());
         let mut last = first.clone();
+        // A certificate hangs on the cone, not on the polygon inside it: what was looked for in vain is not looked for again.
+        let mut in_vain = first.ray.as_ref().and_then(|report| report.in_vain());
         let mut ladder = Ladder::new(first);
         let mut facets = usize::from(rules.facets);
         for polygon in polygons(rules.facets, problem.system.pairs.len()) {
             if polygon.facets() > facets {
                 facets = polygon.facets();
                 on_polygon = None;
+                // Around a polygon that is solved for its own sake the cone is the narrower the finer it is.
+                in_vain = in_vain.filter(|_| problem.cone);
             }
             if watch.stop() {
                 return Err(SolveError::Interrupted);
             }
             let turned = problem.clone().with_polygon(polygon);
             let mut again = self.attempt_contact(&turned, (rules, Extent::Whole), watch)?;
-            let certified = again.ray.as_mut().is_some_and(|report| certify_ray(report, &turned, self.built()));
+            let certified = again.ray.as_mut().is_some_and(|report| {
+                if let Some(out_of_time) = in_vain {
+                    report.leave_undecided(out_of_time);
+                    return false;
+                }
+                let certified = certify_ray(report, &turned, self.built());
+                in_vain = report.in_vain();
+                certified
+            });
             ladder.tried(&mut again);
-            if is_final(&again, problem) {
+            if again.stands(problem.cone) {
                 let note = format!(
                     "the polygon of {} facets turned by {:.4}° led to it after {} other{}",
                     polygon.facets(),

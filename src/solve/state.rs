@@ -104,6 +104,11 @@ impl Solved {
         whole
     }
 
+    /// Whether it is an answer, in space one on Coulomb's cone where that is asked for.
+    pub fn stands(&self, cone: bool) -> bool {
+        self.answer.is_answer() && (!cone || self.answer.polygon.is_none_or(|polygon| polygon.cone))
+    }
+
     /// Factors of the load cases; none of a bare LCP.
     pub fn factors(&self) -> &[f64] {
         match &self.run {
