@@ -82,13 +82,7 @@ pub fn main() -> Next {
     if let Err(error) = signals::survive_limits() {
         return Next::Exit(finish(Err(error), &Style::default()));
     }
-    let mut arguments = order::command_first(&Cli::command(), std::env::args_os().collect());
-    if let [_, word, option] = &mut arguments[..]
-        && word == "help"
-        && (option == "--help" || option == "-h")
-    {
-        *option = "help".into();
-    }
+    let arguments = order::command_first(&Cli::command(), std::env::args_os().collect());
     if let Some((word, look)) = prompt::asked_help(&arguments) {
         let style = look.style(&io::stdout());
         let written = prompt::write_help(&word, &style, &mut Printable::new(io::stdout(), style.color));

@@ -14,8 +14,14 @@ fn takes_value(grammar: &Command, long: &str) -> Option<bool> {
 }
 
 /// The arguments with the options ahead of the command moved behind it. Where no command follows them, or one of them
-/// is unknown, everything stays as it is.
-pub fn command_first(grammar: &Command, arguments: Vec<OsString>) -> Vec<OsString> {
+/// is unknown, everything stays as it is. Clap's own `help` takes no options: `help --help` becomes `help help`.
+pub fn command_first(grammar: &Command, mut arguments: Vec<OsString>) -> Vec<OsString> {
+    if let [_, word, option] = &mut arguments[..]
+        && word == "help"
+        && (option == "--help" || option == "-h")
+    {
+        *option = "help".into();
+    }
     let mut at = 1;
     while let Some(word) = arguments.get(at).and_then(|word| word.to_str()) {
         let Some(option) = word.strip_prefix("--") else { break };
