@@ -23,6 +23,7 @@ pub mod new;
 pub(in crate::session) mod parameters;
 pub(in crate::session) mod pivots;
 pub(in crate::session) mod plot_path;
+mod plot_structure;
 mod plot_traction;
 pub(in crate::session) mod plots;
 pub(in crate::session) mod prove;

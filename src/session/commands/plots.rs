@@ -1,22 +1,15 @@
 //! `plot`: what is drawn of the state shown, and at which pivots.
 
-use std::path::Path;
-
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use crate::answer::diagram::Internal;
-use crate::answer::record::{MemberForces, NodeDisplacement, PairState, PivotRecord};
-use crate::model::structure::{Dimension, Structure};
-use crate::model::words::no_such;
+use crate::answer::record::{PairState, PivotRecord};
+use crate::model::structure::Dimension;
 use crate::view::plot::chart::Chart;
-use crate::view::plot::diagram;
 use crate::view::plot::face_map::{self, FaceMap};
-use crate::view::plot::scene::{self, Magnification};
+use crate::view::plot::trace;
 use crate::view::plot::zone::{self, Quantity};
-use crate::view::plot::{structure, trace};
-use crate::view::projection::Viewpoint;
-use crate::view::status::weight;
 
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
@@ -25,7 +18,7 @@ use crate::session::{CommandError, Next, Output, Session};
 /// Lines of a plot if the user names none.
 pub(super) const HEIGHT: usize = 14;
 /// Lines of the picture of a structure if the user names none.
-const STRUCTURE_HEIGHT: usize = 20;
+pub(super) const STRUCTURE_HEIGHT: usize = 20;
 
 /// What `plot` draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -272,179 +265,6 @@ impl Session {
         }
         Ok(pivots)
     }
-
-    fn plot_structure(&self, of: &[String], height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let look = Look::read(of)?;
-        let shown = self.shape()?;
-        let loads = look.loads.unwrap_or(true).then_some((&self.now.values, &self.now.scenario.units));
-        io.show(&shown, |out, style| {
-            let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
-            structure::write(out, &scene::Picture { magnification: look.scale, ..picture }, loads, style)
-        })?;
-        Ok(())
-    }
-
-    /// The motion of the structure along the ray.
-    fn plot_mode(&self, of: &[String], height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let look = Look::read(of)?;
-        let shown = self.mode_shape()?;
-        let loads = look.loads.unwrap_or(false).then_some((&self.now.values, &self.now.scenario.units));
-        io.show(&shown, |out, style| {
-            let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
-            structure::write(out, &scene::Picture { magnification: look.scale, ..picture }, loads, style)
-        })?;
-        Ok(())
-    }
-
-    /// The name of the scenario without folders, for titles.
-    pub(in crate::session) fn short_name(&self) -> &str {
-        let name = self.now.scenario.name.as_str();
-        Path::new(name).file_name().and_then(|name| name.to_str()).unwrap_or(name)
-    }
-
-    /// The structure as it is shown.
-    pub(in crate::session) fn shape(&self) -> Result<Shape<'_>, CommandError> {
-        self.need_quantities()?;
-        let title = match self.shown_place() {
-            Some(place) => format!("{} · {place}", self.short_name()),
-            None => self.short_name().to_owned(),
-        };
-        Ok(Shape {
-            title,
-            structure: self.structure().ok_or_else(not_a_structure)?,
-            displacements: self.quantity_displacements(),
-            factors: self.quantity_factors(),
-            viewpoint: self.viewpoint,
-            pairs: Some(self.quantity_pairs()),
-        })
-    }
-
-    /// Where the state shown stands, if it is not the answer itself.
-    fn shown_place(&self) -> Option<String> {
-        if let Some(place) = self.history_place() {
-            return Some(place);
-        }
-        let answer = self.answer()?;
-        match self.position {
-            Some(step) => Some(crate::view::pivots::title(step)),
-            None => answer
-                .ray
-                .as_ref()
-                .map(|ray| format!("no answer, p = {}", weight(ray.p, answer, &self.now.scenario.units))),
-        }
-    }
-
-    /// The motion along the ray.
-    pub(in crate::session) fn mode_shape(&self) -> Result<Shape<'_>, CommandError> {
-        self.need_answer()?;
-        let structure = self.structure().ok_or_else(not_a_structure)?;
-        let mode = self
-            .solved
-            .as_ref()
-            .and_then(|solved| solved.ray.as_ref())
-            .and_then(|ray| ray.mode.as_ref())
-            .ok_or_else(|| {
-                CommandError::Refused("no mode to draw: the run did not end in a motion that costs no energy".into())
-            })?;
-        let displacements = structure
-            .nodes
-            .iter()
-            .zip(&mode.displacements)
-            .map(|(node, u)| NodeDisplacement::of(structure.dimension, &node.id, *u))
-            .collect();
-        let title = format!("{}: collapse mode", self.short_name());
-        let viewpoint = self.viewpoint;
-        Ok(Shape { title, structure, displacements: Some(displacements), factors: &[], viewpoint, pairs: None })
-    }
-
-    /// The forces of the bars and the bars that are meant: the one named, or all.
-    pub(in crate::session) fn bars(&self, bar: Option<&str>) -> Result<(&[MemberForces], Vec<&str>), CommandError> {
-        let answer = self.need_quantities()?;
-        let structure = self.structure().ok_or_else(not_a_structure)?;
-        let Some(members) = &answer.members else {
-            return Err(CommandError::Refused("no member forces: there is no answer".into()));
-        };
-        let names = || structure.bars.iter().map(|bar| bar.id.as_str());
-        match bar {
-            Some(bar) => match names().find(|name| *name == bar) {
-                Some(name) => Ok((members, vec![name])),
-                None => Err(CommandError::Refused(no_such("bar", bar, names()))),
-            },
-            None if structure.bars.is_empty() => Err(CommandError::Refused("the structure has no bars".into())),
-            None => Ok((members, names().collect())),
-        }
-    }
-
-    fn plot_diagram(
-        &self,
-        force: Internal,
-        bar: Option<&str>,
-        height: Option<usize>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
-        let (members, bars) = self.bars(bar)?;
-        let &[bar] = &bars[..] else {
-            let structure = self.structure().ok_or_else(not_a_structure)?;
-            let title = self.shape()?.title;
-            let shown = Shape {
-                title,
-                structure,
-                displacements: None,
-                factors: &[],
-                viewpoint: self.viewpoint,
-                pairs: Some(self.quantity_pairs()),
-            };
-            let curves: Vec<Curve<'_>> = bars.iter().map(|bar| Curve::of(members, bar, force)).collect();
-            io.show(&curves, |out, style| {
-                let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
-                structure::write_with_diagrams(out, &picture, (members, force), &self.now.scenario.units, style)
-            })?;
-            return Ok(());
-        };
-        io.show(&Curve::of(members, bar, force), |out, style| {
-            let diagram = diagram::Drawing { members, bar, force, height: height.unwrap_or(HEIGHT) };
-            diagram::write(out, &diagram, &self.now.scenario.units, style)
-        })?;
-        Ok(())
-    }
-}
-
-/// What the user asks of the picture of a structure.
-#[derive(Default)]
-struct Look {
-    loads: Option<bool>,
-    scale: Magnification,
-}
-
-impl Look {
-    /// `loads on|off` and `scale FACTOR|auto`, in any order.
-    fn read(words: &[String]) -> Result<Look, CommandError> {
-        let mut look = Look::default();
-        let mut words = words.iter().map(String::as_str);
-        while let Some(word) = words.next() {
-            match (word, words.next()) {
-                ("loads", Some("on")) => look.loads = Some(true),
-                ("loads", Some("off")) => look.loads = Some(false),
-                ("scale", Some("auto")) => look.scale = Magnification::Auto,
-                ("scale", Some(factor)) => {
-                    let factor = factor.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor >= 0.0);
-                    look.scale = Magnification::Factor(factor.ok_or_else(|| {
-                        CommandError::Refused("plot: `scale` takes a number from 0 on, or `auto`".to_owned())
-                    })?);
-                }
-                ("loads", _) => return Err(CommandError::Refused("plot: `loads` takes on or off".to_owned())),
-                ("scale", None) => {
-                    return Err(CommandError::Refused("plot: `scale` takes a number from 0 on, or `auto`".to_owned()));
-                }
-                _ => {
-                    return Err(CommandError::Refused(format!(
-                        "plot: `{word}` makes no sense here: expected `loads on`, `loads off`, `scale FACTOR` or `scale auto`"
-                    )));
-                }
-            }
-        }
-        Ok(look)
-    }
 }
 
 /// The pairs at a pivot.
@@ -454,57 +274,6 @@ struct AtPivot<'a> {
     pairs: &'a [PairState],
 }
 
-/// An internal force along a bar: distances from its start and values.
-#[derive(Serialize)]
-struct Curve<'a> {
-    bar: &'a str,
-    points: Option<Vec<(f64, f64)>>,
-}
-
-impl<'a> Curve<'a> {
-    fn of(members: &[MemberForces], bar: &'a str, force: Internal) -> Self {
-        Curve { bar, points: diagram::series(members, bar, force).map(|series| series.points) }
-    }
-}
-
-/// A structure with what is shown on it.
-#[derive(Serialize)]
-pub(in crate::session) struct Shape<'a> {
-    #[serde(skip)]
-    pub(in crate::session) title: String,
-    #[serde(skip)]
-    pub(in crate::session) structure: &'a Structure,
-    pub(in crate::session) displacements: Option<Vec<NodeDisplacement>>,
-    /// Of the load cases; none of a motion.
-    #[serde(skip)]
-    pub(in crate::session) factors: &'a [f64],
-    /// From where it is seen, in space.
-    #[serde(skip)]
-    pub(in crate::session) viewpoint: Viewpoint,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(in crate::session) pairs: Option<Vec<PairState>>,
-}
-
-impl Shape<'_> {
-    /// Its picture, so many rows high.
-    pub(in crate::session) fn picture(&self, height: usize) -> scene::Picture<'_> {
-        scene::Picture {
-            title: &self.title,
-            structure: self.structure,
-            displacements: self.displacements.as_deref(),
-            factors: self.factors,
-            pairs: self.pairs.as_deref(),
-            magnification: Magnification::Auto,
-            viewpoint: self.viewpoint,
-            height,
-        }
-    }
-}
-
 pub(super) fn borrowed(states: &[(String, Vec<PairState>)]) -> Vec<(&str, &[PairState])> {
     states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect()
-}
-
-fn not_a_structure() -> CommandError {
-    CommandError::Refused("the scenario is no structure: there is nothing to draw".into())
 }
