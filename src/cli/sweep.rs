@@ -15,7 +15,8 @@ use crate::view::style::Style;
 /// Solve at every point of a grid, on all cores
 ///
 /// Rows come in the order of the grid (the last parameter runs fastest) and are the same bytes whatever the number
-/// of threads or shards. Ctrl-C keeps the rows that are done; --resume goes on from there.
+/// of threads or shards. Ctrl-C keeps the rows that are done; --resume goes on from there. In space, where a slip has a
+/// direction and no sense, slip+ and slip- stay empty: --columns "count slip *" counts slips.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:\n  stickslip sweep beam --vary f=0:1:0.05 --out beam.csv\n  \
                   stickslip sweep beam --vary f=0:1:0.05 --vary F2=0:400:10 --shard $K/$N --out part-$K.csv --resume\n  \

@@ -19,6 +19,9 @@ use crate::view;
 /// A load whose present value is negative grows downwards. `limit cycle LOAD [A..B]` brackets the largest value to which
 /// the load may go to and fro from A (0 if it is left out) so that the structure still shakes down; B, or the present
 /// value, is looked at first.
+///
+/// In space, where slips turn, no path leads to the limit: runs of their own bracket it, with an answer on Coulomb's
+/// cone on one side and a collapse that is certified on it on the other. Load cycles are followed in the plane only.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  limit pull\n  limit F2\n  limit cycle F2 0..100")]
 pub struct Limit {

@@ -30,7 +30,8 @@ const ROWS: usize = 2_000;
 /// Solve at every point of a grid of up to three parameters
 ///
 /// A range is A..B, with the number of points N after it (11 if left out). With `--out` the rows go to a .csv or
-/// .json file as they come; Ctrl-C keeps what is done and `--resume` goes on from there.
+/// .json file as they come; Ctrl-C keeps what is done and `--resume` goes on from there. In space, where a slip has a direction
+/// and no sense, slip+ and slip- stay empty: `--columns "count slip *"` counts slips.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  sweep f 0..1 21\n  sweep f 0..1 F2 0..400 41 --out beam.csv")]
 pub struct Sweep {
