@@ -15,10 +15,13 @@ use crate::session::{CommandError, Next, Output, Session};
 /// ISO is isometric with z upwards; XY looks down along z, XZ along y, YZ along x from its far end. Two numbers are the
 /// azimuth of the viewer, in degrees from x towards y, and the elevation above the plane of x and y.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  view XZ; plot structure\n  view -30 20\n  view")]
+#[command(
+    override_usage = "view [ISO|XY|XZ|YZ | AZIMUTH ELEVATION]",
+    after_help = "Example:\n  view XZ; plot structure\n  view -30 20\n  view"
+)]
 pub struct View {
     /// ISO, XY, XZ or YZ; or azimuth and elevation in degrees
-    #[arg(value_name = "ISO|XY|XZ|YZ", num_args = 0..=2, allow_negative_numbers = true)]
+    #[arg(value_name = "VIEW", num_args = 0..=2, allow_negative_numbers = true)]
     from: Vec<String>,
 }
 

@@ -110,8 +110,7 @@ pub fn command(state: &State) -> Option<Result<String, String>> {
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let look = state.look;
     let (Some(drawn), Some(at)) = (drawn(state), cursor(state)) else {
-        let text = "no map yet: `:map P Q` draws one of two parameters, for example `:map f F2`";
-        put_text(look, text, look.role(Role::Muted), area, buffer);
+        put_text(look, &without(state), look.role(Role::Muted), area, buffer);
         return;
     };
     let size = size(drawn, area);
@@ -141,4 +140,11 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         mark(present, Some(look.sign('◆', '+')), look.role(Role::Accent).add_modifier(Modifier::BOLD));
     }
     mark(at, None, look.selected());
+}
+
+/// What to do where there is no map: an example with parameters of this scenario.
+fn without(state: &State) -> String {
+    let mut names = state.shown.values.free().map(|(name, _)| quote(name));
+    let example = names.next().zip(names.next()).map(|(p, q)| format!(", for example `:map {p} {q}`"));
+    format!("no map yet: `:map P Q` draws one of two parameters{}", example.unwrap_or_default())
 }

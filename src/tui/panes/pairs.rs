@@ -134,7 +134,9 @@ pub fn about(state: &State) -> Option<String> {
         text.push_str(&format!(" (was {})", change.from));
     }
     text.push_str(&format!(" · x_n {}", f(pair.x_n)));
-    if pair.law.has_tangential_joint() {
+    if pair.space.is_some() && pair.law.has_tangential_joint() {
+        text.push_str(&format!(" · |x_τ| {}, bound {}", short(pair.x_t), f(pair.bound)));
+    } else if pair.law.has_tangential_joint() {
         text.push_str(&format!(" · x_τ {} within ±{}", short(pair.x_t), f(pair.bound)));
     }
     if pair.z_n != 0.0 {

@@ -92,15 +92,32 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
         Some(before) => vec![("now", shown.pairs()), ("before", before)],
         None => vec![(now_label.as_str(), shown.pairs())],
     };
+    let over_zone = |states: &[(&str, &[PairState])], area: Rect| {
+        fitting(area, |height| {
+            report(state.look, width, |out, style| zone::write(out, quantity, states, units, height, style))
+        })
+    };
     if let Some(structure) = shown.structure().filter(|structure| structure.dimension == Dimension::Space) {
         let (maps, rest) = faces(structure, shown.pairs(), quantity, units);
-        if rest.is_empty() && !maps.is_empty() {
-            return over_faces(state, &maps, area);
+        if !maps.is_empty() {
+            let (above, below) = beside(area, &maps, &rest);
+            let mut lines = over_faces(state, &maps, above);
+            if !rest.is_empty() {
+                let states = [(now_label.as_str(), rest.as_slice())];
+                lines.resize(usize::from(above.height), Line::default());
+                lines.extend(over_zone(&states, below));
+            }
+            return lines;
         }
     }
-    fitting(area, |height| {
-        report(state.look, width, |out, style| zone::write(out, quantity, &states, units, height, style))
-    })
+    over_zone(&states, area)
+}
+
+/// The room for maps, and below it that for the curves over pairs that lie on no face.
+fn beside(area: Rect, maps: &[FaceMap], rest: &[PairState]) -> (Rect, Rect) {
+    let parts = maps.len() + usize::from(!rest.is_empty());
+    let above = (usize::from(area.height) * maps.len() / parts) as u16;
+    (Rect { height: above, ..area }, Rect { height: area.height - above, ..area })
 }
 
 /// The maps of faces, one below the other.

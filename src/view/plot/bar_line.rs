@@ -23,6 +23,13 @@ impl BarLine {
         BarLine { elements }
     }
 
+    /// Of values along the bar the places on it and the local y there; of two values at one distance the second belongs to
+    /// the element after it.
+    pub fn feet(&self, points: &[(f64, f64)]) -> Vec<([f64; 3], [f64; 3])> {
+        let late = |i: usize| i == 0 || points[i - 1].0 == points[i].0;
+        points.iter().enumerate().map(|(i, &(distance, _))| self.at(distance, late(i))).collect()
+    }
+
     /// The place at a distance, and the local y; `late` takes the element after a node that lies there.
     pub fn at(&self, distance: f64, late: bool) -> ([f64; 3], [f64; 3]) {
         let begun = |start: f64| if late { start <= distance } else { start < distance };

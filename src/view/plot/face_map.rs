@@ -13,7 +13,6 @@ use crate::model::units::Units;
 use crate::model::vector::{dot, way};
 use crate::text::number::{heading, short, with_unit};
 use crate::view::style::{Role, Style};
-use crate::view::{force_unit, length_unit};
 
 /// Nodes this far out of the plane, of the size of the face, are on another one.
 const FLAT: f64 = 1e-6;
@@ -129,13 +128,8 @@ impl FaceMap {
             Some((face, _)) => face,
             None => &spots[0].id,
         };
-        let (what, unit) = match quantity {
-            Quantity::Slip => ("Slip |z_τ|", length_unit(units)),
-            Quantity::Force => ("Friction force |x_τ|", force_unit(units)),
-            Quantity::Gap => ("Opening z_n", length_unit(units)),
-            Quantity::Pressure => ("Pressing force x_n", force_unit(units)),
-        };
-        let title = format!("{} over {name}", heading(what, unit.as_deref()));
+        let unit = quantity.unit(units);
+        let title = format!("{} over {name}", heading(quantity.name(true), unit.as_deref()));
         let spacing = (least_step(at.iter().map(|at| at.0), size), least_step(at.iter().map(|at| at.1), size));
         Some(FaceMap { title, unit, spots, largest, spacing, tangents: [t1, t2], quantity })
     }

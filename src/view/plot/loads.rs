@@ -3,7 +3,6 @@
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
-use super::canvas::{Canvas, Stroke};
 use super::depth::Seen;
 use crate::model::groups::Groups;
 use crate::model::structure::{ElementLoad, Load, LoadCase, Structure};
@@ -11,7 +10,6 @@ use crate::model::units::Units;
 use crate::model::vector::{distance, length as size};
 use crate::text::number::{short, with_unit};
 use crate::view::projection::Projection;
-use crate::view::style::Role;
 use crate::view::{force_unit, line_load_unit};
 
 /// Most load cases that a legend names.
@@ -33,7 +31,7 @@ impl LoadKind {
 }
 
 /// Load cases, a bit for each; those from 128 on share the last one.
-type Cases = u128;
+pub type Cases = u128;
 
 /// A point force or a weight: its kind, its place in the picture, its force in the model, its cases.
 type Point = (LoadKind, Seen, [f64; 3], Cases);
@@ -87,7 +85,7 @@ const END_ON: f64 = 0.1;
 
 impl Arrow {
     /// Of a load that is as large as the largest of its kind.
-    fn new(kind: LoadKind, at: (f64, f64), force: [f64; 3], cases: Cases, projection: &Projection) -> Arrow {
+    pub(super) fn new(kind: LoadKind, at: (f64, f64), force: [f64; 3], cases: Cases, projection: &Projection) -> Arrow {
         let [x, y, towards] = projection.seen(force.map(|f| f / size(force)));
         Arrow { kind, at, force, direction: (x, y), comes: towards > 0.0, share: 1.0, cases }
     }
@@ -97,6 +95,14 @@ impl Arrow {
         let (x, y) = self.direction;
         let length = x.hypot(y);
         (length > END_ON).then(|| (x / length, y / length))
+    }
+
+    /// Tail and tip as distances along it from its place, `apart` from that: from outside to its place, or away from it
+    /// where it pulls at the very end of the structure, whose middle is so far behind and whose size is `extent`.
+    pub fn span(&self, outward: f64, extent: f64, [shortest, longest]: [f64; 2], apart: f64) -> [f64; 2] {
+        let longest = if self.kind == LoadKind::Line { 0.6 * longest } else { longest };
+        let length = shortest + (longest - shortest) * self.share;
+        if outward > 0.3 * extent { [apart, apart + length] } else { [-apart - length, -apart] }
     }
 }
 
@@ -332,94 +338,10 @@ fn together(points: Vec<Point>, apart: f64) -> (Vec<Point>, bool) {
     (all.map(|(kind, _, weight)| (kind, weight.centre(), weight.force, weight.cases)).collect(), is_added)
 }
 
-/// Lengths of arrows in dots, of the largest of a kind and of a tiny one.
-const LONGEST: f64 = 15.0;
-const SHORTEST: f64 = 3.0;
-
-/// An arrow in dots: tail, tip.
-pub struct Drawn {
-    tail: (f64, f64),
-    tip: (f64, f64),
-    /// `None` where it leads out of the picture or into it.
-    direction: Option<(f64, f64)>,
-    /// Whether it leads towards the viewer.
-    comes: bool,
-}
-
-impl Drawn {
-    /// The arrow of a load at `at` (dots): from outside to its place, or away from it where it pulls at the very end of
-    /// the structure, whose middle and size these are.
-    pub fn new(arrow: &Arrow, at: (f64, f64), middle: (f64, f64), extent: f64) -> Drawn {
-        let Some((c, s)) = arrow.direction() else {
-            return Drawn { tail: at, tip: at, direction: None, comes: arrow.comes };
-        };
-        let longest = if arrow.kind == LoadKind::Line { 0.6 * LONGEST } else { LONGEST };
-        let length = SHORTEST + (longest - SHORTEST) * arrow.share;
-        // the sign of a node or a pair keeps its character
-        let apart = 2.0 * c.abs() + 4.0 * s.abs();
-        let pulls = (at.0 - middle.0) * c + (at.1 - middle.1) * s > 0.3 * extent;
-        let (tail, tip) = if pulls { (apart, apart + length) } else { (-apart - length, -apart) };
-        let on_line = |distance: f64| (at.0 + distance * c, at.1 + distance * s);
-        Drawn { tail: on_line(tail), tip: on_line(tip), direction: Some((c, s)), comes: arrow.comes }
-    }
-
-    /// Both ends.
-    pub fn ends(&self) -> [(f64, f64); 2] {
-        [self.tail, self.tip]
-    }
-
-    /// The same cut to what is in view: the end that stands beside its place stays, the other comes nearer. `None` where
-    /// that end is out of view.
-    pub fn cut(self, is_seen: impl Fn((f64, f64)) -> bool) -> Option<Drawn> {
-        let nearer = |fixed: (f64, f64), far: (f64, f64)| {
-            let on_line = |share: f64| (fixed.0 + share * (far.0 - fixed.0), fixed.1 + share * (far.1 - fixed.1));
-            [1.0, 0.75, 0.5, 0.25, 0.0].into_iter().map(on_line).find(|end| is_seen(*end))
-        };
-        if is_seen(self.tip) {
-            return Some(Drawn { tail: nearer(self.tip, self.tail)?, ..self });
-        }
-        let tip = nearer(self.tail, self.tip)?;
-        Some(Drawn { tip, ..self })
-    }
-
-    /// The sign at the tip.
-    pub fn sign(&self, ascii: bool) -> char {
-        let Some((c, s)) = self.direction else {
-            return match (self.comes, ascii) {
-                (true, false) => '⊙',
-                (false, false) => '⊗',
-                (true, true) => '@',
-                (false, true) => 'X',
-            };
-        };
-        if ascii {
-            return match (c.abs() > s.abs(), c > 0.0, s > 0.0) {
-                (true, true, _) => '}',
-                (true, false, _) => '{',
-                (false, _, true) => 'U',
-                (false, _, false) => 'V',
-            };
-        }
-        // eighths of a turn from → on, counter-clockwise
-        const SIGNS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
-        let eighth = (s.atan2(c) / std::f64::consts::FRAC_PI_4).round().rem_euclid(8.0);
-        SIGNS[eighth as usize % 8]
-    }
-
-    /// Draws it.
-    pub fn draw(&self, canvas: &mut Canvas, ascii: bool) {
-        if self.direction.is_some() {
-            canvas.draw_under(Role::Accent, vec![Stroke::Line(vec![self.tail, self.tip])]);
-        }
-        canvas.put(self.tip.0, self.tip.1, self.sign(ascii), Role::Accent);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::model::vector::flat;
-    use crate::view::projection::Viewpoint;
 
     fn nodal(points: &[((f64, f64), [f64; 2])]) -> Loads {
         Loads {
@@ -451,18 +373,6 @@ mod tests {
         let loads = Loads { points: kept, ..Loads::default() };
         let found = loads.arrows(1.0);
         assert!(found.is_added && found.arrows.len() == 1 && found.arrows[0].force == [0.0, -4.0, 0.0]);
-    }
-
-    /// A force along the view has no direction in the picture, but a sign and its size.
-    #[test]
-    fn a_force_along_the_view_is_seen_from_its_end() {
-        let from_above = Projection::new(crate::model::structure::Dimension::Space, Viewpoint::named("XY").unwrap());
-        for (force, sign, ascii) in [([0.0, 0.0, -5.0], '⊗', 'X'), ([0.0, 0.0, 5.0], '⊙', '@')] {
-            let arrow = Arrow::new(LoadKind::Force, (0.0, 0.0), force, 1, &from_above);
-            assert_eq!(arrow.direction(), None);
-            let drawn = Drawn::new(&arrow, (0.0, 0.0), (0.0, 0.0), 10.0);
-            assert_eq!((drawn.sign(false), drawn.sign(true)), (sign, ascii));
-        }
     }
 
     #[test]
@@ -505,18 +415,5 @@ mod tests {
         assert_eq!(legend(&loads), ["load up to 3 kN", "weight + quake up to 20.616 kN"]);
         loads.points.push(point(LoadKind::Force, 4.0, [0.0, 4.0], 0b1000));
         assert_eq!(legend(&loads)[0], "push + wind up to 5 kN");
-    }
-
-    #[test]
-    fn an_arrow_points_along_its_force() {
-        for (force, sign, ascii) in
-            [([0.0, -1.0], '↓', 'V'), ([1.0, 0.0], '→', '}'), ([-1.0, 1.0], '↖', 'U'), ([-1.0, 0.0], '←', '{')]
-        {
-            let arrow = Arrow::new(LoadKind::Force, (0.0, 0.0), flat(force), 1, &Projection::PLANE);
-            let drawn = Drawn::new(&arrow, (0.0, 0.0), (0.0, 0.0), 10.0);
-            assert_eq!((drawn.sign(false), drawn.sign(true)), (sign, ascii));
-            let [tail, tip] = drawn.ends();
-            assert!((tip.0 - tail.0) * force[0] + (tip.1 - tail.1) * force[1] > 0.0);
-        }
     }
 }

@@ -8,6 +8,7 @@ pub mod depth;
 pub mod diagram;
 pub mod face_map;
 pub mod lines;
+pub mod load_arrow;
 pub mod loads;
 pub mod path;
 pub mod scene;

@@ -74,6 +74,8 @@ pub fn factor(structure: &Structure, factors: &[f64], u: &[[f64; 6]], magnificat
         (high - low).max(0.0)
     };
     let size = side(0).max(side(1)).max(side(2));
+    // a single point is seen in a picture of size 1
+    let size = if size > 0.0 { size } else { 1.0 };
     let rough = 0.1 * size / largest_displacement(structure, factors, u);
     if !(rough.is_finite() && rough > 0.0) {
         return 1.0;
@@ -239,13 +241,12 @@ impl Scene {
 
 /// The ordinates of values along a bar, from its axis and back to it.
 fn ordinates(bar: &BarLine, points: &[(f64, f64)], scale: f64) -> Vec<[f64; 3]> {
-    let place = |s: f64, value: f64| {
-        let (at, across) = bar.at(s, false);
+    let feet = bar.feet(points);
+    let tip = |((at, across), (_, value)): (&([f64; 3], [f64; 3]), &(f64, f64))| {
         std::array::from_fn(|c| at[c] + scale * value * across[c])
     };
-    let [first, last] = [points.first(), points.last()].map(|end| end.map(|(s, _)| place(*s, 0.0)));
-    let line = points.iter().map(|(s, value)| place(*s, *value));
-    first.into_iter().chain(line).chain(last).collect()
+    let [first, last] = [feet.first(), feet.last()].map(|foot| foot.map(|(at, _)| *at));
+    first.into_iter().chain(feet.iter().zip(points).map(tip)).chain(last).collect()
 }
 
 /// Nodes with supports and how they are held: 3 clamped, 2 at their place, 1 in some directions.

@@ -24,6 +24,28 @@ pub enum Quantity {
     Pressure,
 }
 
+impl Quantity {
+    /// What it is called; in space slip and friction are magnitudes.
+    pub fn name(self, in_space: bool) -> &'static str {
+        match (self, in_space) {
+            (Quantity::Slip, false) => "Slip z_τ",
+            (Quantity::Slip, true) => "Slip |z_τ|",
+            (Quantity::Force, false) => "Friction force x_τ",
+            (Quantity::Force, true) => "Friction force |x_τ|",
+            (Quantity::Gap, _) => "Opening z_n",
+            (Quantity::Pressure, _) => "Pressing force x_n",
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self, units: &Units) -> Option<String> {
+        match self {
+            Quantity::Slip | Quantity::Gap => length_unit(units),
+            Quantity::Force | Quantity::Pressure => force_unit(units),
+        }
+    }
+}
+
 /// Most of the width that stands between the joints.
 const BETWEEN: f64 = 0.4;
 /// Of the length of all joints, what stands between two of them where they are few.
@@ -145,11 +167,12 @@ pub fn write(
 
 /// The chart of `quantity` for one or several states of the same pairs.
 pub fn drawing(quantity: Quantity, states: &[(&str, &[PairState])], units: &Units) -> Chart {
-    let (name, unit) = match quantity {
-        Quantity::Slip => ("Slip z_τ", length_unit(units)),
-        Quantity::Force => ("Friction force x_τ and its bound ±(f x_n + c)", force_unit(units)),
-        Quantity::Gap => ("Opening z_n", length_unit(units)),
-        Quantity::Pressure => ("Pressing force x_n", force_unit(units)),
+    let in_space = states.iter().any(|(_, pairs)| pairs.iter().any(|pair| pair.space.is_some()));
+    // a magnitude has one bound
+    let [force_word, bound] = if in_space { ["|x_τ|", "f x_n + c"] } else { ["x_τ", "±(f x_n + c)"] };
+    let name = match quantity {
+        Quantity::Force => format!("{} and its bound {bound}", quantity.name(in_space)),
+        _ => quantity.name(in_space).to_owned(),
     };
     let mut curves = Vec::new();
     let several = states.len() > 1;
@@ -165,16 +188,11 @@ pub fn drawing(quantity: Quantity, states: &[(&str, &[PairState])], units: &Unit
             Quantity::Gap => push(gap_series(&named(""), pairs), Line::Marked),
             Quantity::Pressure => push(pressure_series(&named(""), pairs), Line::Marked),
             Quantity::Force => {
-                let [force, mut plus, minus] = force_series(&named("x_τ"), pairs);
+                let [force, mut plus, minus] = force_series(&named(force_word), pairs);
                 if let Some(first) = plus.first_mut() {
-                    first.label = if several { format!("{label}: bound") } else { "±(f x_n + c)".into() };
-                }
-                let in_space = pairs.iter().any(|pair| pair.space.is_some());
-                if in_space && let Some(first) = plus.first_mut().filter(|_| !several) {
-                    first.label = "f x_n + c".into();
+                    first.label = if several { format!("{label}: bound") } else { bound.to_owned() };
                 }
                 push(plus, Line::Dotted);
-                // a magnitude has one bound
                 if !in_space {
                     push(minus, Line::Dotted);
                 }
@@ -182,7 +200,7 @@ pub fn drawing(quantity: Quantity, states: &[(&str, &[PairState])], units: &Unit
             }
         }
     }
-    over_states(name, unit, curves, states, units)
+    over_states(&name, quantity.unit(units), curves, states, units)
 }
 
 /// The chart of x_n and x_τ per length of edge, for states of pairs that all lie on edges; `lengths` are those of the

@@ -2,7 +2,7 @@
 
 use super::{Anchor, BLACK, COLOURS, Caption, Drawing, FAINT, GREY, MARGIN, SMALL, Sign, WIDTH, width_of};
 use crate::text::number::with_unit;
-use crate::view::plot::chart::{Chart, Curve, Line, Values};
+use crate::view::plot::chart::{Axes, Chart, Curve, Line, Values};
 use crate::view::plot::ticks::{HUGE, round_places};
 use crate::view::scale::Scale;
 
@@ -42,10 +42,28 @@ pub fn figure(chart: &Chart, about: &str, note: &str) -> String {
     let axes = chart.axes(|_| 6);
     let title = chart.heading(axes.as_ref().map(|axes| &axes.scale), false);
     let mut drawing = Drawing::new(&Caption { title, about: about.to_owned() });
-    let Some(axes) = axes else {
-        drawing.paragraph("nothing to draw", SMALL, "", BLACK);
-        return drawing.finish();
-    };
+    match axes {
+        Some(axes) => draw(&mut drawing, chart, &axes),
+        None => drawing.paragraph("nothing to draw", SMALL, "", BLACK),
+    }
+    if !note.is_empty() {
+        drawing.y += 12.0;
+        drawing.paragraph(note, SMALL, "", BLACK);
+    }
+    drawing.finish()
+}
+
+/// The chart below what is drawn already, with its title.
+pub(super) fn below(drawing: &mut Drawing, chart: &Chart) {
+    if let Some(axes) = chart.axes(|_| 6) {
+        drawing.y += 18.0;
+        drawing.paragraph(&chart.heading(Some(&axes.scale), false), 15.0, "font-weight=\"bold\"", BLACK);
+        draw(drawing, chart, &axes);
+    }
+}
+
+/// The curves, their axes and their legend.
+fn draw(drawing: &mut Drawing, chart: &Chart, axes: &Axes) {
     let (ticks, labels) = (&axes.ticks, axes.labels());
     let gutter = labels.iter().map(|label| width_of(label, SMALL)).fold(0.0, f64::max);
     let (left, right) = (MARGIN + gutter + 12.0, WIDTH - MARGIN - 12.0);
@@ -71,10 +89,10 @@ pub fn figure(chart: &Chart, about: &str, note: &str) -> String {
         drawing.line((to_x(*x), top), (to_x(*x), bottom), GREY, 1.0, DOTTED);
     }
     for curve in &chart.curves {
-        draw_curve(&mut drawing, curve, &|(x, y)| (to_x(x), to_y(y)));
+        draw_curve(drawing, curve, &|(x, y)| (to_x(x), to_y(y)));
     }
     drawing.y = bottom;
-    name_abscissas(&mut drawing, chart, (first, last), &to_x);
+    name_abscissas(drawing, chart, (first, last), &to_x);
     let (marked, dotted): (Vec<&Curve>, Vec<&Curve>) = chart
         .curves
         .iter()
@@ -86,11 +104,6 @@ pub fn figure(chart: &Chart, about: &str, note: &str) -> String {
         .map(|curve| (Sign::Curve(curve.number, curve.line), curve.series.label.clone()))
         .collect();
     drawing.legend(&entries);
-    if !note.is_empty() {
-        drawing.y += 12.0;
-        drawing.paragraph(note, SMALL, "", BLACK);
-    }
-    drawing.finish()
 }
 
 fn draw_curve(drawing: &mut Drawing, curve: &Curve, place: &dyn Fn((f64, f64)) -> (f64, f64)) {

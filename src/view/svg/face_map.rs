@@ -1,9 +1,10 @@
 //! A quantity over a face of contact: filled cells, with arrows where pairs slip.
 
 use super::structure::{Place, pair};
-use super::{Anchor, BLACK, Caption, Drawing, GREY, MARGIN, SMALL, Sign};
+use super::{Anchor, BLACK, Caption, Drawing, GREY, MARGIN, SMALL, Sign, chart};
 use crate::answer::record::State;
 use crate::text::number::{short, with_unit};
+use crate::view::plot::chart::Chart;
 use crate::view::plot::face_map::{FaceMap, LEVELS};
 
 /// From nothing to the largest value: light to dark, told apart without colours too.
@@ -19,8 +20,8 @@ fn colour(share: f64) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// The figure of these maps, one below the other; there is at least one.
-pub fn figure(maps: &[FaceMap], about: &str) -> String {
+/// The figure of these maps, one below the other; there is at least one. `beside`: the curves over pairs that lie on no face.
+pub fn figure(maps: &[FaceMap], beside: Option<&Chart>, about: &str) -> String {
     let mut drawing = Drawing::new(&Caption { title: maps[0].title.clone(), about: about.to_owned() });
     for (number, map) in maps.iter().enumerate() {
         if number > 0 {
@@ -33,6 +34,9 @@ pub fn figure(maps: &[FaceMap], about: &str) -> String {
         for note in map.notes().iter().skip(1) {
             drawing.paragraph(note, SMALL, "", GREY);
         }
+    }
+    if let Some(chart) = beside {
+        chart::below(&mut drawing, chart);
     }
     drawing.finish()
 }

@@ -49,18 +49,13 @@ pub fn figure(scene: &Scene, of: &Bars<'_>, unit: Option<&str>, caption: &Captio
     let mut labels: Vec<Label> = Vec::new();
     for (bar, points) in &drawn {
         let axis = BarLine::of(structure, bar);
-        let ordinate = |distance: f64, value: f64, late: bool| {
-            let (at, across) = axis.at(distance, late);
+        let ordinate = |(at, across): ([f64; 3], [f64; 3]), value: f64| {
             let ((x, y), (nx, ny)) = (place.at(scene.projection.flat(at)), scene.projection.flat(across));
             let height = if most > 0.0 { side * denoised(value, most) / most * ORDINATE } else { 0.0 };
             ((x, y), (x + height * nx, y - height * ny))
         };
-        let ends: Vec<_> = points
-            .iter()
-            .enumerate()
-            // of two values at one place the second belongs to what comes after it
-            .map(|(i, &(s, value))| ordinate(s, value, i > 0 && points[i - 1].0 == s || i == 0))
-            .collect();
+        let feet = axis.feet(points).into_iter();
+        let ends: Vec<_> = feet.zip(points).map(|(foot, &(_, value))| ordinate(foot, value)).collect();
         let shape: Vec<(f64, f64)> =
             ends.iter().map(|(_, tip)| *tip).chain(ends.iter().rev().map(|(foot, _)| *foot)).collect();
         let words: Vec<String> = shape.iter().map(|(x, y)| format!("{},{}", super::px(*x), super::px(*y))).collect();
@@ -78,7 +73,7 @@ pub fn figure(scene: &Scene, of: &Bars<'_>, unit: Option<&str>, caption: &Captio
                     diagram.extremes(force).iter().all(|other| denoised(other.value - extreme.value, most) == 0.0);
                 let distance = if constant { 0.5 * diagram.length() } else { extreme.distance };
                 if value != 0.0 {
-                    let (foot, tip) = ordinate(distance, value, false);
+                    let (foot, tip) = ordinate(axis.at(distance, false), value);
                     labels.push(Label { foot, tip, value });
                 }
             }

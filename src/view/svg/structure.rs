@@ -12,9 +12,8 @@ use crate::view::projection::Projection;
 
 /// px between arrows of loads.
 const APART: f64 = 24.0;
-/// Lengths of arrows in px, of the largest of a kind and of a tiny one.
-const LONGEST: f64 = 34.0;
-const SHORTEST: f64 = 9.0;
+/// Lengths of arrows in px, of a tiny one and of the largest of a kind.
+const LENGTHS: [f64; 2] = [9.0, 34.0];
 /// Most height of the structure itself.
 const HEIGHT: f64 = 420.0;
 /// Room around the structure for arrows, signs and names.
@@ -258,19 +257,16 @@ fn sign_radius(scene: &Scene, place: &Place) -> f64 {
 /// where it pulls away from the structure.
 fn draw_loads(drawing: &mut Drawing, arrows: &[Arrow], place: &Place, [x, y]: [[f64; 2]; 2]) {
     let middle = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]));
+    let extent = (x[1] - x[0]).max(y[1] - y[0]);
     for arrow in arrows {
         let here = place.at(arrow.at);
         let Some((c, up)) = arrow.direction() else {
             end_on(drawing, here, arrow.comes, colour(arrow.kind));
             continue;
         };
-        let longest = if arrow.kind == LoadKind::Line { 0.6 * LONGEST } else { LONGEST };
-        let (length, apart) = (SHORTEST + (longest - SHORTEST) * arrow.share, 7.0);
         let s = -up;
-        // how far from the middle along the force: a pull at the very end leads away from the structure
         let outward = (arrow.at.0 - middle.0) * c + (arrow.at.1 - middle.1) * up;
-        let pulls = outward > 0.3 * (x[1] - x[0]).max(y[1] - y[0]);
-        let (from, to) = if pulls { (apart, apart + length) } else { (-apart - length, -apart) };
+        let [from, to] = arrow.span(outward, extent, LENGTHS, 7.0);
         let on_line = |distance: f64| (here.0 + distance * c, here.1 + distance * s);
         drawing.arrow(on_line(from), on_line(to), colour(arrow.kind));
         for step in 0..=4 {

@@ -37,7 +37,7 @@ fn drawn(structure: &Structure, view: &str, style: &Style) -> String {
         if let [map] = &face_map::faces(structure, &states, zone::Quantity::Slip, &units).0[..] {
             std::fs::write(
                 format!("{folder}/map-{}.svg", structure.nodes.len()),
-                svg::face_map::figure(std::slice::from_ref(map), "about"),
+                svg::face_map::figure(std::slice::from_ref(map), None, "about"),
             )
             .unwrap();
         }

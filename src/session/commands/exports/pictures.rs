@@ -41,11 +41,13 @@ impl Session {
         let units = &self.now.scenario.units;
         let zone = |quantity| -> Result<String, CommandError> {
             let states = self.zone_states(of)?;
-            match self.faces(quantity, &states) {
-                // pairs beside faces, if any, are in the table of the pairs
-                (maps, _) if !maps.is_empty() => Ok(svg::face_map::figure(&maps, &self.about())),
-                (_, states) => Ok(self.chart_figure(&zone::drawing(quantity, &borrowed(&states), units), "")),
+            let (maps, states) = self.faces(quantity, &states);
+            let chart = || zone::drawing(quantity, &borrowed(&states), units);
+            if maps.is_empty() {
+                return Ok(self.chart_figure(&chart(), ""));
             }
+            let beside = (!states.is_empty()).then(chart);
+            Ok(svg::face_map::figure(&maps, beside.as_ref(), &self.about()))
         };
         match what {
             Exported::Slip => zone(Quantity::Slip),
