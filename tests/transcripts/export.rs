@@ -9,6 +9,8 @@ use stickslip::session::{CommandError, Output, Session};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 
+use super::lines;
+
 /// A beam on a joint of two plates' kind: everything that can be exported is there. Two load combinations, two stages,
 /// a probe, an edge contact, a bar, a support.
 const SCENARIO: &str = r#"{
@@ -244,6 +246,30 @@ fn embedded_structures_are_exported() {
             }
         }
     }
+}
+
+/// A block on its face beside a post on a node, which slips by (3 − 0.1 · 10)/10: the figure has the cells of the face and
+/// the curve over the post.
+#[test]
+fn figures_show_faces_and_the_pairs_beside_them() {
+    let text = r#"{ "format": "stickslip/1", "title": "block and post", "dimension": 3,
+      "materials": { "m": { "E": 1e5, "nu": 0.2, "density": 1 } },
+      "nodes": { "post": [3, 0, 0] },
+      "springs": [ { "at": "post", "direction": [1, 0, 0], "stiffness": 10 },
+                   { "at": "post", "direction": [0, 1, 0], "stiffness": 10 } ],
+      "bricks": [ { "id": "block", "origin": [0, 0, 0], "size": [1, 1, 1], "divisions": [1, 1, 1], "material": "m" } ],
+      "contacts": [ { "id": "base", "face": "block.bottom", "against": "ground", "friction": 0.5 },
+                    { "id": "foot", "node": "post", "against": "ground", "normal": [0, 0, 1], "friction": 0.1 } ],
+      "loads": { "weight": { "items": [ { "gravity": { "acceleration": [0, 0, -1] } },
+                                        { "point": { "at": "post", "force": [3, 0, -10] } } ] } } }"#;
+    let mut session = lines::read(text);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("slip.svg");
+    run(&mut session, &format!("export slip {}", file.display())).expect("written");
+    let figure = fs::read_to_string(&file).expect("there");
+    tags(&figure);
+    assert_eq!(figure.matches("<title>base[").count(), 4, "{figure}");
+    assert!(figure.contains(">Slip |z_τ|</text>") && figure.contains(">foot</text>"), "{figure}");
 }
 
 /// An element of XML: its name, its attributes, the text up to the next tag.
