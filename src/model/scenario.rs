@@ -96,12 +96,12 @@ pub enum Source {
 }
 
 impl Source {
-    /// Whether pairs slip in a plane of directions.
-    pub fn is_in_space(&self) -> bool {
+    /// Where its structure lies, or its pairs slip: those of space in a plane of directions.
+    pub fn dimension(&self) -> Dimension {
         match self {
-            Source::Structure(structure) => structure.dimension == Dimension::Space,
-            Source::ContactSystem(given) => given.tangents == 2,
-            Source::Lcp(_) => false,
+            Source::Structure(structure) => structure.dimension,
+            Source::ContactSystem(given) if given.tangents == 2 => Dimension::Space,
+            Source::ContactSystem(_) | Source::Lcp(_) => Dimension::Plane,
         }
     }
 }

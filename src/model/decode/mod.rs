@@ -170,7 +170,7 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: 
         Source::ContactSystem(system) => Some(system.loads.iter().map(|load| load.name.as_str()).collect()),
         Source::Lcp(_) => None,
     };
-    if !source.is_in_space() {
+    if source.dimension() == Dimension::Plane {
         polygon::refuse_in_plane(solver, &SOLVER);
     }
     let stages = with_cases(&fields, "stages", cases.as_deref(), stages::read);

@@ -14,8 +14,8 @@ use super::units::Units;
 pub use names::{Names, fits};
 pub use read::{QuantityError, read, read_all, read_text};
 pub use words::{
-    Dimension, Internal, Meaning, OfAnswer, OfLoad, OfNode, OfPair, OfStress, Over, STATES, WORDS, Word,
-    displacement_words, entry, pair_words,
+    Dimension, Internal, Meaning, OfAnswer, OfLoad, OfNode, OfPair, OfStress, Over, WORDS, Word, displacement_words,
+    entry, pair_words, states_of, words_of,
 };
 
 /// Where on a bar.

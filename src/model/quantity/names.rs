@@ -4,13 +4,15 @@ use std::collections::HashSet;
 
 use super::Quantity;
 use crate::model::scenario::{Scenario, Source};
-use crate::model::structure::Structure;
+use crate::model::structure::{Dimension, Structure};
 
 /// The names that quantities of a scenario may have as arguments.
 #[derive(Clone, Debug, Default)]
 pub struct Names<'s> {
     /// Ids of the pairs.
     pub pairs: Vec<&'s str>,
+    /// Where they and the nodes lie.
+    pub dimension: Dimension,
     pub(super) nodes: HashSet<&'s str>,
     pub(super) bars: Vec<&'s str>,
     pub(super) structure: Option<&'s Structure>,
@@ -27,6 +29,7 @@ impl<'s> Names<'s> {
             parameters: scenario.parameters.keys().map(String::as_str).collect(),
             stages: scenario.stages.len(),
             probes: &scenario.probes,
+            dimension: scenario.source.dimension(),
             ..Names::default()
         };
         match &scenario.source {

@@ -1,6 +1,6 @@
 //! The words of a command, a probe or an option → quantities, against the names of a scenario.
 
-use super::words::{Internal, Meaning, OfStress, Over, STATES, WORDS, entry, pair_words};
+use super::words::{Internal, Meaning, OfStress, Over, Word, entry, pair_words, states_of, words_of};
 use super::{BarPlace, Names, Quantity, ResultantPart, fits};
 use crate::model::structure::Dimension;
 use crate::model::words::{did_you_mean_typed, no_such};
@@ -69,9 +69,10 @@ fn read_words<'w>(
 ) -> Result<(Quantity, &'w [String]), QuantityError> {
     let Some(entry) = entry(first) else {
         let probes = names.probes.iter().map(|(name, _)| name.as_str());
-        let near = did_you_mean_typed(first, WORDS.iter().map(|known| known.word).chain(probes));
+        let near = did_you_mean_typed(first, words_of(names.dimension).map(|known| known.word).chain(probes));
         return error(format!("unknown quantity `{first}`{near}; `help show` lists them"));
     };
+    lies_there(entry, names)?;
     let argument = |rest: &'w [String]| match rest.split_first() {
         Some((argument, rest)) if !argument.is_empty() => Ok((argument.clone(), rest)),
         _ => error(format!("`{}` of what? Write `{} {}`", entry.word, entry.word, entry.meaning.arguments())),
@@ -91,15 +92,11 @@ fn read_words<'w>(
             Ok((quantity, rest))
         }
         Meaning::Node(which) => {
-            lies_there(entry.word, |dimension| which.is_of(dimension), names)?;
             let (node, rest) = argument(rest)?;
             known_place("node", &node, names, &[])?;
             Ok((Quantity::Node(which, node), rest))
         }
-        Meaning::Bar(which) => {
-            lies_there(entry.word, |dimension| which.is_of(dimension), names)?;
-            bar(which, rest, names, None)
-        }
+        Meaning::Bar(which) => bar(which, rest, names, None),
         Meaning::Stress(which) => {
             let (name, rest) = argument(rest)?;
             Ok((stress(which, name, names)?, rest))
@@ -125,7 +122,7 @@ fn read_words<'w>(
         Meaning::Over(how) => over(how, rest, names),
         Meaning::Count => {
             let (state, rest) = argument(rest)?;
-            let state = known("state", &state, STATES)?;
+            let state = known("state", &state, &states_of(names.dimension))?;
             let (pattern, rest) = pattern(rest, names)?;
             Ok((Quantity::Count(state, pattern), rest))
         }
@@ -161,17 +158,20 @@ fn stress(which: OfStress, name: String, names: &Names<'_>) -> Result<Quantity, 
     }
 }
 
-/// Refuses a quantity of space for a structure in the plane, and the other way round.
-fn lies_there(word: &str, is_of: impl Fn(Dimension) -> bool, names: &Names<'_>) -> Result<(), QuantityError> {
-    match names.structure.map(|structure| structure.dimension) {
-        Some(Dimension::Plane) if !is_of(Dimension::Plane) => {
-            error(format!("`{word}` is a quantity of space, and this structure lies in the plane"))
-        }
-        Some(Dimension::Space) if !is_of(Dimension::Space) => {
-            error(format!("`{word}` is a quantity of the plane, and this structure lies in space"))
-        }
-        _ => Ok(()),
+/// Refuses a quantity of space in the plane, and the other way round.
+fn lies_there(entry: &Word, names: &Names<'_>) -> Result<(), QuantityError> {
+    // A bare LCP lies nowhere: the name is refused.
+    let is_anywhere = names.structure.is_some() || !names.pairs.is_empty();
+    if entry.meaning.is_of(names.dimension) || !is_anywhere {
+        return Ok(());
     }
+    let what = if names.structure.is_some() { "structure" } else { "problem" };
+    let (other, here) = match names.dimension {
+        Dimension::Plane => (Dimension::Space, Dimension::Plane),
+        Dimension::Space => (Dimension::Plane, Dimension::Space),
+    };
+    let (other, here) = (other.in_which(), here.in_which());
+    error(format!("`{}` is a quantity of {other}, and this {what} lies in {here}", entry.word))
 }
 
 /// Refuses what is neither a node nor one of the `others`.
@@ -221,7 +221,9 @@ fn over<'w>(over: Over, rest: &'w [String], names: &Names<'_>) -> Result<(Quanti
     if inner == "u" && over == Over::Max {
         return Ok((Quantity::LargestDisplacement, after));
     }
-    match entry(inner).map(|entry| entry.meaning) {
+    let entry = entry(inner);
+    entry.map_or(Ok(()), |entry| lies_there(entry, names))?;
+    match entry.map(|entry| entry.meaning) {
         Some(Meaning::Bar(which)) if over != Over::Sum => bar(which, after, names, Some(over)),
         Some(Meaning::Pair(which)) => {
             let (pattern, rest) = pattern(after, names)?;
@@ -229,7 +231,7 @@ fn over<'w>(over: Over, rest: &'w [String], names: &Names<'_>) -> Result<(Quanti
         }
         _ => error(format!(
             "`{word} {inner}`{}: expected a number of pairs, like `{word} x_n joint[*]`{}",
-            did_you_mean_typed(inner, pair_words().map(|(word, _)| word)),
+            did_you_mean_typed(inner, pair_words(names.dimension).map(|(word, _)| word)),
             match over {
                 Over::Sum => "",
                 Over::Max => ", of a bar, like `max M AB`, or `max u`",
@@ -341,6 +343,7 @@ mod tests {
             parameters: vec!["f", "F2"],
             stages: 2,
             probes,
+            dimension: Dimension::Plane,
         }
     }
 
@@ -445,6 +448,9 @@ mod tests {
             ("sum M AB", "expected a number of pairs"),
             ("sum x_n d*", "no pair `d*`"),
             ("count opne", "no state `opne` (did you mean `open`?)"),
+            ("count slip", "no state `slip` (did you mean `slip+`"),
+            ("max Mz AB", "`Mz` is a quantity of space, and this structure lies in the plane"),
+            ("x_t1 c1", "`x_t1` is a quantity of space, and this structure lies in the plane"),
             ("resultant c1 N", "no edge contact `c1`"),
             ("resultant joint M", "takes N, T or e"),
             ("mises lower{4,0}", "no node or element `lower{4,0}`"),

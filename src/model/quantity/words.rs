@@ -93,6 +93,16 @@ pub enum OfPair {
     SlipAlong(usize),
 }
 
+impl OfPair {
+    /// Whether pairs of the plane, or of space, have it.
+    pub fn is_of(self, dimension: structure::Dimension) -> bool {
+        match dimension {
+            structure::Dimension::Plane => !matches!(self, OfPair::FrictionAlong(_) | OfPair::SlipAlong(_)),
+            structure::Dimension::Space => !matches!(self, OfPair::ReservePlus | OfPair::ReserveMinus),
+        }
+    }
+}
+
 /// A displacement of a node, or a component of its reaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OfNode {
@@ -207,10 +217,7 @@ impl Internal {
 
     /// Whether bars of the plane, or of space, have it by this name.
     pub fn is_of(self, dimension: structure::Dimension) -> bool {
-        match dimension {
-            structure::Dimension::Plane => Internal::ALL.contains(&self),
-            structure::Dimension::Space => Internal::IN_SPACE.contains(&self),
-        }
+        Internal::of(dimension == structure::Dimension::Space).contains(&self)
     }
 
     /// `N`, `Q`, `Vy` ….
@@ -303,6 +310,16 @@ impl Meaning {
         }
     }
 
+    /// Whether there is such a thing in the plane, or in space.
+    pub fn is_of(self, dimension: structure::Dimension) -> bool {
+        match self {
+            Meaning::Pair(which) => which.is_of(dimension),
+            Meaning::Node(which) => which.is_of(dimension),
+            Meaning::Bar(which) => which.is_of(dimension),
+            _ => true,
+        }
+    }
+
     /// Its line in the table; every meaning has one.
     pub fn entry(self) -> &'static Word {
         WORDS.iter().find(|entry| entry.meaning == self).unwrap_or(&WORDS[0])
@@ -329,6 +346,16 @@ pub struct Word {
     pub choices: &'static [&'static str],
 }
 
+impl Word {
+    /// The words that it may be in the plane, or in space; none where it is a number.
+    pub fn choices_of(&self, dimension: structure::Dimension) -> Vec<&'static str> {
+        match self.meaning {
+            Meaning::State => states_of(dimension),
+            _ => self.choices.to_vec(),
+        }
+    }
+}
+
 const fn number(word: &'static str, meaning: Meaning, dimension: Dimension, about: &'static str) -> Word {
     Word { word, meaning, dimension, about, choices: &[] }
 }
@@ -338,7 +365,16 @@ const fn chosen(word: &'static str, meaning: Meaning, choices: &'static [&'stati
 }
 
 /// The states of pairs.
-pub const STATES: &[&str] = &["open", "stick", "slip+", "slip-", "slip", "closed"];
+const STATES: &[&str] = &["open", "stick", "slip+", "slip-", "slip", "closed"];
+
+/// Those of pairs in the plane, which slip along +t or −t, or in space.
+pub fn states_of(dimension: structure::Dimension) -> Vec<&'static str> {
+    let elsewhere: &[&str] = match dimension {
+        structure::Dimension::Plane => &["slip"],
+        structure::Dimension::Space => &["slip+", "slip-"],
+    };
+    STATES.iter().copied().filter(|state| !elsewhere.contains(state)).collect()
+}
 
 /// How a run can end; `answer` stands for trivial and normal.
 const OUTCOMES: &[&str] = &["trivial", "normal", "answer", "ray", "pivot-limit", "breakdown", "check-failed"];
@@ -426,22 +462,27 @@ pub static WORDS: &[Word] = &[
     number("stage", M::Stage, D::Inner, "a quantity at the end of a stage: stage 2 x_n c1"),
 ];
 
+/// The words that mean something in the plane, or in space.
+pub fn words_of(dimension: structure::Dimension) -> impl Iterator<Item = &'static Word> {
+    WORDS.iter().filter(move |entry| entry.meaning.is_of(dimension))
+}
+
 /// The table entry of a word.
 pub fn entry(word: &str) -> Option<&'static Word> {
     WORDS.iter().find(|known| known.word == word)
 }
 
-/// The words for the numbers of a pair.
-pub fn pair_words() -> impl Iterator<Item = (&'static str, OfPair)> {
-    WORDS.iter().filter_map(|entry| match entry.meaning {
+/// The words for the numbers of a pair in the plane, or in space.
+pub fn pair_words(dimension: structure::Dimension) -> impl Iterator<Item = (&'static str, OfPair)> {
+    words_of(dimension).filter_map(|entry| match entry.meaning {
         Meaning::Pair(which) => Some((entry.word, which)),
         _ => None,
     })
 }
 
-/// The words for the displacements of a node.
-pub fn displacement_words() -> impl Iterator<Item = (&'static str, OfNode)> {
-    WORDS.iter().filter_map(|entry| match entry.meaning {
+/// The words for the displacements of a node in the plane, or in space.
+pub fn displacement_words(dimension: structure::Dimension) -> impl Iterator<Item = (&'static str, OfNode)> {
+    words_of(dimension).filter_map(|entry| match entry.meaning {
         Meaning::Node(which) if which.displaced().is_some() => Some((entry.word, which)),
         _ => None,
     })

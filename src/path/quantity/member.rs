@@ -17,10 +17,6 @@ impl Facts<'_> {
     }
 
     pub(super) fn of_bar(&self, which: Internal, bar: &str, place: BarPlace) -> Result<f64, NoValue> {
-        let (structure, _) = self.structure()?;
-        if !which.is_of(structure.dimension) {
-            return Err(NoValue(format!("no {} in {}", which.symbol(), structure.dimension.in_which())));
-        }
         let members = self.members()?;
         let diagram = Diagram::of(members, bar).ok_or_else(|| self.missing())?;
         let [force, moment] = of_members(members.iter());

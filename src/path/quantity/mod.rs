@@ -29,7 +29,7 @@ impl Facts<'_> {
             Quantity::State(id) => return Ok(Value::Word(self.pair(id)?.state.word().to_owned())),
             Quantity::Stage(stage, inner) => return self.of_stage(*stage, inner),
             Quantity::Probe(_, inner) => return self.value(inner),
-            Quantity::Pair(which, id) => which.known(self.pair(id)?)?,
+            Quantity::Pair(which, id) => which.of(self.pair(id)?),
             Quantity::Pairs(over, which, pattern) => self.of_pairs(*over, *which, pattern)?,
             Quantity::Count(state, pattern) => self.count(state, pattern)?,
             Quantity::Resultant(joint, part) => self.of_joint(joint, *part)?,

@@ -4,7 +4,7 @@ use super::facts::Facts;
 use super::value::NoValue;
 use crate::answer::record::{NodeDisplacement, Reaction};
 use crate::answer::rounding::{denoised, of_reactions};
-use crate::model::quantity::{Meaning, OfNode};
+use crate::model::quantity::OfNode;
 use crate::model::vector::length;
 
 impl OfNode {
@@ -29,10 +29,7 @@ impl OfNode {
 
 impl Facts<'_> {
     pub(super) fn of_node(&self, which: OfNode, node: &str) -> Result<f64, NoValue> {
-        let (structure, _) = self.structure()?;
-        if !which.is_of(structure.dimension) {
-            return Err(NoValue(format!("no {} in {}", Meaning::Node(which).word(), structure.dimension.in_which())));
-        }
+        self.structure()?;
         let Some(component) = which.displaced() else {
             let reactions = self.reactions()?;
             let found = reactions.iter().find(|reaction| reaction.node == node);

@@ -1,7 +1,7 @@
 //! Numbers of pairs, and of all pairs that fit a pattern.
 
 use super::facts::Facts;
-use super::value::{NoValue, none};
+use super::value::NoValue;
 use crate::answer::record::{InSpace, PairState};
 use crate::answer::rounding::balance;
 use crate::model::quantity::{OfPair, Over, fits};
@@ -25,16 +25,6 @@ impl OfPair {
             OfPair::Reserve => pair.reserve(),
         }
     }
-
-    /// Of a pair, where it has one.
-    pub fn known(self, pair: &PairState) -> Result<f64, NoValue> {
-        let value = self.of(pair);
-        match (value.is_nan(), pair.space.is_some()) {
-            (false, _) => Ok(value),
-            (true, true) => none("x+ and x- are reserves of the plane; in space ask `reserve`"),
-            (true, false) => none("components along t1 and t2 are those of a pair in space"),
-        }
-    }
 }
 
 impl<'a> Facts<'a> {
@@ -44,8 +34,7 @@ impl<'a> Facts<'a> {
     }
 
     pub(super) fn of_pairs(&self, over: Over, which: OfPair, pattern: &str) -> Result<f64, NoValue> {
-        let chosen = self.chosen(pattern)?.into_iter().map(|pair| which.known(pair)).collect::<Result<Vec<_>, _>>()?;
-        let chosen = chosen.into_iter();
+        let chosen = self.chosen(pattern)?.into_iter().map(|pair| which.of(pair));
         Ok(match over {
             Over::Sum => balance(chosen),
             Over::Max => chosen.fold(f64::NEG_INFINITY, f64::max),

@@ -73,16 +73,15 @@ impl Action for Expect {
 
 /// A subject, and what it is compared with.
 fn words(asked: &Asked<'_>) -> Vec<Candidate> {
+    let choices = |subject: &str| expect::choices(subject, asked.names.dimension);
     match asked.given {
         [] => {
-            let mut all = Candidate::plain(expect::subjects());
+            let mut all = Candidate::plain(expect::subjects(asked.names.dimension));
             all.extend(asked.quantities(&[]));
             all
         }
-        [subject] if subject != "state" && !expect::choices(subject).is_empty() => {
-            Candidate::plain(expect::choices(subject))
-        }
-        [.., subject, _] if subject == "state" => Candidate::plain(expect::choices("state")),
+        [subject] if subject != "state" && !choices(subject).is_empty() => Candidate::plain(choices(subject)),
+        [.., subject, _] if subject == "state" => Candidate::plain(choices("state")),
         given => asked.quantities(given),
     }
 }

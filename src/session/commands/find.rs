@@ -47,12 +47,11 @@ impl Action for Find {
 /// `least` or `most`, the parameter or load case, `where`, the condition.
 pub(super) fn words(asked: &Asked<'_>) -> Vec<Candidate> {
     if let Some(at) = asked.given.iter().position(|word| word == "where") {
+        let choices = |subject: &str| expect::choices(subject, asked.names.dimension);
         return match &asked.given[at + 1..] {
             [subject, _] if subject == "state" => Candidate::plain(["="]),
-            [.., subject, sign] if sign == "=" && !expect::choices(subject).is_empty() => {
-                Candidate::plain(expect::choices(subject))
-            }
-            [subject, _, sign] if sign == "=" && subject == "state" => Candidate::plain(expect::choices("state")),
+            [.., subject, sign] if sign == "=" && !choices(subject).is_empty() => Candidate::plain(choices(subject)),
+            [subject, _, sign] if sign == "=" && subject == "state" => Candidate::plain(choices("state")),
             rest => asked.quantities(rest),
         };
     }

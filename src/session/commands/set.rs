@@ -6,7 +6,7 @@ use crate::model::parameter::Parameter;
 use crate::session::journal::Record;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
-use crate::session::language::setting::{self, RULES, SetError, Setting};
+use crate::session::language::setting::{self, SetError, Setting, rules_of};
 use crate::session::{CommandError, Next, Output, Session};
 use crate::text::number::short;
 
@@ -52,7 +52,7 @@ fn settings(asked: &Asked<'_>) -> Vec<Candidate> {
 
 fn parameters_and_rules(asked: &Asked<'_>) -> Vec<Candidate> {
     let mut all = asked.parameters();
-    all.extend(RULES.iter().map(|rule| Candidate::new(rule.name, rule.about)));
+    all.extend(rules_of(asked.names.dimension).map(|rule| Candidate::new(rule.name, rule.about)));
     all
 }
 

@@ -8,10 +8,10 @@ use clap::Args;
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, PlainSolution, Reaction};
 use crate::export::json as json_export;
-use crate::model::quantity::displacement_words;
+use crate::model::quantity::{Meaning, entry};
 use crate::model::scenario::Source;
 use crate::session::language::command::{Action, Command};
-use crate::session::language::selection::{Rows, displacement_keys, keys_there, member_keys, no_pair, pair_keys, sort};
+use crate::session::language::selection::{Rows, displacement_keys, member_keys, no_pair, pair_keys, sort};
 use crate::session::{CommandError, Next, Output, Session};
 use crate::text::number::short;
 use crate::view;
@@ -30,7 +30,7 @@ pub struct Pairs {
 
 pub const PAIRS: Command = Command {
     usage: Some("[PAIR…] [sort KEY]"),
-    complete: |asked| asked.rows(&asked.names.pairs, &pair_keys()),
+    complete: |asked| asked.rows(&asked.names.pairs, &pair_keys(asked.names.dimension)),
     ..Command::of::<Pairs>("pairs")
 };
 
@@ -51,7 +51,7 @@ pub struct Displacements {
 }
 
 pub const DISPLACEMENTS: Command = Command {
-    complete: |asked| asked.rows(&asked.names.nodes, &displacement_keys()),
+    complete: |asked| asked.rows(&asked.names.nodes, &displacement_keys(asked.names.dimension)),
     ..Command::of::<Displacements>("displacements")
 };
 
@@ -71,8 +71,10 @@ pub struct Members {
     words: Vec<String>,
 }
 
-pub const MEMBERS: Command =
-    Command { complete: |asked| asked.rows(&asked.names.bars, &member_keys()), ..Command::of::<Members>("members") };
+pub const MEMBERS: Command = Command {
+    complete: |asked| asked.rows(&asked.names.bars, &member_keys(asked.names.dimension)),
+    ..Command::of::<Members>("members")
+};
 
 impl Action for Members {
     fn run(&self, session: &mut Session, _: &str, io: &mut Output<'_>) -> Result<Next, CommandError> {
@@ -105,7 +107,7 @@ impl Session {
         if let (Source::Lcp(_), Some(solution)) = (&self.now.scenario.source, self.solution()) {
             return self.report_solution(&solution, io);
         }
-        let rows = Rows::read(words, "pairs", &pair_keys())?;
+        let rows = Rows::read(words, "pairs", &pair_keys(self.now.scenario.source.dimension()))?;
         let all = self.quantity_pairs();
         let ids: Vec<&str> = all.iter().map(|pair| pair.id.as_str()).collect();
         if let ([], Some(name)) = (&ids[..], rows.names.first()) {
@@ -169,16 +171,16 @@ impl Session {
         words: &[String],
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let keys = keys_there(displacement_keys(), self.now.scenario.source.is_in_space());
+        let keys = displacement_keys(self.now.scenario.source.dimension());
         let rows = Rows::read(words, "displacements", &keys)?;
         let answer = self.need_quantities()?;
         let all = self.quantity_displacements().ok_or_else(|| self.none("displacements", answer))?;
         let ids: Vec<&str> = all.iter().map(|node| node.node.as_str()).collect();
         let mut chosen: Vec<NodeDisplacement> =
             rows.chosen("node", &ids)?.into_iter().map(|index| all[index].clone()).collect();
-        rows.order(&mut chosen, "u", |node, key| {
-            let component = displacement_words().find(|(word, _)| *word == key).and_then(|(_, which)| which.of(node));
-            component.map_or(node.length(), f64::abs)
+        rows.order(&mut chosen, "u", |node, key| match entry(key).map(|entry| entry.meaning) {
+            Some(Meaning::Node(which)) => which.of(node).map_or(0.0, f64::abs),
+            _ => node.length(),
         });
         io.show(&chosen, |out, style| {
             self.write_place_shown(out, style)?;
@@ -189,7 +191,7 @@ impl Session {
 
     /// `members [BARS] [sort KEY] [top N]`.
     pub(in crate::session) fn report_members(&self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
-        let keys = keys_there(member_keys(), self.now.scenario.source.is_in_space());
+        let keys = member_keys(self.now.scenario.source.dimension());
         let rows = Rows::read(words, "members", &keys)?;
         let answer = self.need_quantities()?;
         let all = answer.members.as_ref().ok_or_else(|| self.none("member forces", answer))?;

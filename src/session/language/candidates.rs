@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Names;
 use crate::model::scenario::{Scenario, Source};
+use crate::model::structure::Dimension;
 use crate::session::Session;
 use crate::session::language::tokens;
 
@@ -33,6 +34,8 @@ pub struct Vocabulary {
     pub elements: Vec<String>,
     /// Load combinations.
     pub combinations: Vec<String>,
+    /// Where the pairs and the nodes lie.
+    pub dimension: Dimension,
 }
 
 impl Vocabulary {
@@ -42,6 +45,7 @@ impl Vocabulary {
             joints: Names::of(scenario).joints().into_iter().map(str::to_owned).collect(),
             probes: scenario.probes.iter().map(|(name, _)| name.clone()).collect(),
             combinations: scenario.combinations.iter().map(|(name, _)| name.clone()).collect(),
+            dimension: scenario.source.dimension(),
             parameters: values.free().map(|(name, value)| (name.clone(), value)).collect(),
             ..Vocabulary::default()
         };

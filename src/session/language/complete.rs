@@ -196,6 +196,7 @@ fn values(command: &Command, argument: &clap::Arg, asked: &Asked<'_>) -> Vec<Can
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::structure::Dimension;
 
     fn vocabulary() -> Vocabulary {
         Vocabulary {
@@ -208,6 +209,7 @@ mod tests {
             probes: vec!["nozzle moment".into()],
             elements: vec!["q1".into()],
             combinations: vec!["ULS1".into()],
+            dimension: Dimension::Plane,
         }
     }
 
@@ -221,10 +223,10 @@ mod tests {
         assert_eq!(at_end("set F"), ["F2"]);
         assert_eq!(at_end("set covering w"), ["weight"]);
         assert_eq!(at_end("pairs c"), ["c1", "c2"]);
-        assert_eq!(at_end("pairs c1 sort z_"), ["z_n", "z_t", "z_t1", "z_t2"]);
+        assert_eq!(at_end("pairs c1 sort z_"), ["z_n", "z_t"]);
         assert_eq!(at_end("why j"), ["joint[0]"]);
         assert_eq!(at_end("members A"), ["AB"]);
-        assert_eq!(at_end("expect state c1 slip"), ["slip", "slip+", "slip-"]);
+        assert_eq!(at_end("expect state c1 slip"), ["slip+", "slip-"]);
         assert_eq!(at_end("expect x_n "), ["c1", "c2", "joint[0]"]);
         assert_eq!(at_end("plot sl"), ["slip"]);
         assert_eq!(at_end("plot slip --w"), ["--width"]);
@@ -235,16 +237,35 @@ mod tests {
         assert_eq!(at_end("find least p"), ["pull"]);
         assert_eq!(at_end("find f 0..1 w"), ["where"]);
         assert_eq!(at_end("find f where x_n "), ["c1", "c2", "joint[0]"]);
-        assert_eq!(at_end("find f where state c1 = slip"), ["slip", "slip+", "slip-"]);
+        assert_eq!(at_end("find f where state c1 = slip"), ["slip+", "slip-"]);
         assert_eq!(at_end("envelope x_n c1 over p"), ["pull"]);
         assert_eq!(at_end("trace pull t"), ["to"]);
         assert_eq!(at_end("plot path fo"), ["force"]);
         assert_eq!(at_end("load beam-r"), ["beam-ray"]);
         assert_eq!(at_end("set f 0.3; wh"), ["why"]);
-        assert_eq!(at_end("reset co"), ["cone", "covering"]);
+        assert_eq!(at_end("reset co"), ["covering"]);
         assert!(at_end("pairs # c").is_empty());
         assert!(at_end("echo \"pa").is_empty());
         assert!(at_end("bogus c").is_empty());
+    }
+
+    /// What is not there is not offered: words of space in the plane, of the plane in space.
+    #[test]
+    fn in_space_there_are_the_words_of_space() {
+        let vocabulary = Vocabulary { dimension: Dimension::Space, ..vocabulary() };
+        let at_end = |line: &str| -> Vec<String> {
+            let found = completions(line, line.len(), &vocabulary).candidates;
+            found.into_iter().map(|candidate| candidate.text).collect()
+        };
+        assert_eq!(at_end("pairs c1 sort z_"), ["z_n", "z_t", "z_t1", "z_t2"]);
+        assert_eq!(at_end("pairs c1 sort reserve"), ["reserve"]);
+        assert_eq!(at_end("displacements sort r"), ["rx", "ry", "rz"]);
+        assert_eq!(at_end("members sort M"), ["My", "Mz"]);
+        assert_eq!(at_end("expect state c1 slip"), ["slip"]);
+        assert_eq!(at_end("show count sl"), ["slip"]);
+        assert_eq!(at_end("show max M"), ["My", "Mz"]);
+        assert_eq!(at_end("reset co"), ["cone", "covering"]);
+        assert_eq!(at_end("show u"), ["unknowns", "ux", "uy", "uz"]);
     }
 
     #[test]

@@ -7,7 +7,8 @@ use thiserror::Error;
 use crate::model::expression::Expression;
 use crate::model::jet::Jet;
 use crate::model::parameter::ParameterValues;
-use crate::model::quantity::{self, Names, OfAnswer, Quantity, WORDS};
+use crate::model::quantity::{self, Names, OfAnswer, Quantity, words_of};
+use crate::model::structure::Dimension;
 use crate::path::quantity::{Facts, Value};
 
 use crate::model::words::did_you_mean_typed;
@@ -91,15 +92,15 @@ pub struct Unmet {
 const OTHERS: &[&str] = &["ray", "error", "collapse", "undecided", "result"];
 
 /// The words that may follow `expect`, besides the probes.
-pub fn subjects() -> impl Iterator<Item = &'static str> {
-    OTHERS.iter().copied().chain(WORDS.iter().map(|entry| entry.word))
+pub fn subjects(dimension: Dimension) -> impl Iterator<Item = &'static str> {
+    OTHERS.iter().copied().chain(words_of(dimension).map(|entry| entry.word))
 }
 
 /// The words that may follow a subject, where it has a closed list.
-pub fn choices(subject: &str) -> &'static [&'static str] {
+pub fn choices(subject: &str, dimension: Dimension) -> Vec<&'static str> {
     // `ray` is the older word for the class.
     let subject = if subject == "ray" { "class" } else { subject };
-    quantity::entry(subject).map_or(&[], |entry| entry.choices)
+    quantity::entry(subject).map_or(Vec::new(), |entry| entry.choices_of(dimension))
 }
 
 /// Reads the words after `expect`; numbers may be formulas of the parameters, which have these values.
@@ -112,7 +113,7 @@ pub fn read(words: &[String], names: &Names<'_>, values: &ParameterValues) -> Re
         return Err(bad("what is expected?".into()));
     };
     let one_of = |subject: &str, rest: &[String]| {
-        let allowed = choices(subject);
+        let allowed = choices(subject, names.dimension);
         match rest {
             [word] if allowed.contains(&word.as_str()) => Ok(word.clone()),
             [word] => Err(bad(format!(

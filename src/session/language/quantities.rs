@@ -1,6 +1,6 @@
 //! Quantities in the language: the table of `help show`, and what may follow their words.
 
-use crate::model::quantity::{self, Meaning, STATES, WORDS, Word};
+use crate::model::quantity::{self, Meaning, WORDS, Word, states_of, words_of};
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::tokens;
 use crate::view::style::Style;
@@ -41,7 +41,8 @@ impl Asked<'_> {
     pub fn quantities(&self, given: &[String]) -> Vec<Candidate> {
         let names = self.names;
         let words = || {
-            let mut all: Vec<Candidate> = WORDS.iter().map(|entry| Candidate::new(entry.word, "")).collect();
+            let mut all: Vec<Candidate> =
+                words_of(names.dimension).map(|entry| Candidate::new(entry.word, "")).collect();
             all.extend(Candidate::plain(names.probes.iter().map(|probe| tokens::quote(probe))));
             all
         };
@@ -69,9 +70,9 @@ impl Asked<'_> {
             (Meaning::Critical, []) => Candidate::plain(names.parameters.iter().map(|(name, _)| name)),
             (Meaning::Over(_), []) => {
                 let summed = |entry: &&Word| matches!(entry.meaning, Meaning::Pair(_) | Meaning::Bar(_));
-                Candidate::plain(WORDS.iter().filter(summed).map(|entry| entry.word).chain(["u"]))
+                Candidate::plain(words_of(names.dimension).filter(summed).map(|entry| entry.word).chain(["u"]))
             }
-            (Meaning::Count, []) => Candidate::plain(STATES),
+            (Meaning::Count, []) => Candidate::plain(states_of(names.dimension)),
             (Meaning::Count, [_]) => pairs(),
             (Meaning::Stage, [_]) => words(),
             _ => Vec::new(),

@@ -9,33 +9,19 @@ use crate::model::structure::Dimension;
 use crate::model::words::{did_you_mean_typed, no_such};
 use crate::session::CommandError;
 
-/// Keys of `displacements … sort KEY`, by magnitude; `u` is √(u_x² + u_y²).
-pub fn displacement_keys() -> Vec<&'static str> {
-    ["u"].into_iter().chain(displacement_words().map(|(word, _)| word)).collect()
-}
-
-/// Those of the keys that a structure in the plane has, or one in space.
-pub fn keys_there(keys: Vec<&'static str>, is_in_space: bool) -> Vec<&'static str> {
-    let dimension = if is_in_space { Dimension::Space } else { Dimension::Plane };
-    let there = |key: &&str| match entry(key).map(|entry| &entry.meaning) {
-        Some(Meaning::Node(which)) => which.is_of(dimension),
-        Some(Meaning::Bar(which)) => which.is_of(dimension),
-        _ => true,
-    };
-    keys.into_iter().filter(there).collect()
+/// Keys of `displacements … sort KEY`, by magnitude; `u` is the length of the displacement.
+pub fn displacement_keys(dimension: Dimension) -> Vec<&'static str> {
+    ["u"].into_iter().chain(displacement_words(dimension).map(|(word, _)| word)).collect()
 }
 
 /// Keys of `members … sort KEY`, by the largest magnitude along an element.
-pub fn member_keys() -> Vec<&'static str> {
-    let all = Internal::ALL.into_iter().chain(Internal::IN_SPACE);
-    let mut words: Vec<&str> = all.map(Internal::symbol).collect();
-    words.dedup();
-    words
+pub fn member_keys(dimension: Dimension) -> Vec<&'static str> {
+    Internal::of(dimension == Dimension::Space).iter().map(|which| which.symbol()).collect()
 }
 
 /// Keys of `pairs … sort KEY`.
-pub fn pair_keys() -> Vec<&'static str> {
-    ["id", "state"].into_iter().chain(pair_words().map(|(word, _)| word)).chain(["position"]).collect()
+pub fn pair_keys(dimension: Dimension) -> Vec<&'static str> {
+    ["id", "state"].into_iter().chain(pair_words(dimension).map(|(word, _)| word)).chain(["position"]).collect()
 }
 
 pub(in crate::session) fn no_pair(id: &str, pairs: &[PairState]) -> CommandError {
@@ -173,7 +159,7 @@ fn outside_brackets(word: &str) -> Vec<&str> {
 
 /// Sorts by a key; numbers from large to small, ids, states and positions upwards.
 pub(in crate::session) fn sort(pairs: &mut [PairState], key: &str) {
-    if let Some((_, which)) = pair_words().find(|(word, _)| *word == key) {
+    if let Some(Meaning::Pair(which)) = entry(key).map(|entry| entry.meaning) {
         pairs.sort_by(|a, b| which.of(b).total_cmp(&which.of(a)));
         return;
     }

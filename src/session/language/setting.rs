@@ -5,6 +5,7 @@ use thiserror::Error;
 use crate::model::parameter::ParameterValues;
 use crate::model::rules::{Rules, UnknownChoice};
 use crate::model::scenario::{Scenario, Source};
+use crate::model::structure::Dimension;
 
 use crate::model::words::did_you_mean_typed;
 use crate::text::words::list;
@@ -113,10 +114,9 @@ pub static RULES: [Rule; 5] = [
     },
 ];
 
-/// The rules that do something in a scenario: those of the polygon belong to space.
-pub fn rules_of(scenario: &Scenario) -> impl Iterator<Item = &'static Rule> {
-    let in_space = scenario.source.is_in_space();
-    RULES.iter().filter(move |rule| in_space || !matches!(rule.name, "facets" | "cone"))
+/// The rules that do something in the plane, or in space: those of the polygon belong to space.
+pub fn rules_of(dimension: Dimension) -> impl Iterator<Item = &'static Rule> {
+    RULES.iter().filter(move |rule| dimension == Dimension::Space || !matches!(rule.name, "facets" | "cone"))
 }
 
 /// The rule of a name.
@@ -149,7 +149,7 @@ pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> 
     };
     if let Some(rule) = rule(name).filter(|rule| rule.name != "covering" || !matches!(scenario.source, Source::Lcp(_)))
     {
-        if rules_of(scenario).all(|known| known.name != rule.name) {
+        if rules_of(scenario.source.dimension()).all(|known| known.name != rule.name) {
             return Err(SetError::InPlane(rule.name));
         }
         let word = choice()?;
@@ -183,7 +183,7 @@ pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> 
 /// The error for a name that is no parameter.
 pub fn unknown_parameter(name: &str, scenario: &Scenario) -> SetError {
     let names: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
-    let rules: Vec<&str> = rules_of(scenario).map(|rule| rule.name).chain(["auto"]).collect();
+    let rules: Vec<&str> = rules_of(scenario.source.dimension()).map(|rule| rule.name).chain(["auto"]).collect();
     SetError::UnknownParameter {
         name: name.to_owned(),
         near: did_you_mean_typed(name, names.iter().chain(&rules).copied()),
