@@ -7,20 +7,22 @@ use super::reader::Cursor;
 use super::spot::Spot;
 use super::words::{did_you_mean, listed, quoted};
 use crate::model::edge::Edge;
-use crate::model::mesh::boundary::{Boundary, DIRECTIONS};
+use crate::model::face::Face;
+use crate::model::mesh::boundary::Boundary;
+use crate::model::mesh::facing::Facing;
 use crate::model::mesh::surface::Surface;
 use crate::model::mesh::{Group, Members, Mesh};
 
 /// A mesh in the structure.
 pub struct MeshPart {
     id: String,
-    pub(super) mesh: Arc<Mesh>,
+    mesh: Arc<Mesh>,
     /// Index into the structure of each node of the file that is used.
     pub node_of: Vec<Option<usize>>,
     /// Index into the structure of each element of the file that is used.
     pub element_of: Vec<Option<usize>>,
     boundary: Boundary<Arc<Mesh>>,
-    pub(super) surface: Surface<Arc<Mesh>>,
+    surface: Surface<Arc<Mesh>>,
 }
 
 impl MeshPart {
@@ -35,10 +37,13 @@ impl MeshPart {
         &self.id
     }
 
-    fn in_structure(&self, edge: &Edge) -> Edge {
-        // Sides belong to areas, all of which are used with all their nodes.
-        let node = |node: usize| self.node_of[node].unwrap_or_default();
-        let mut edge = edge.clone();
+    /// Sides belong to areas and solids, all of which are used with all their nodes.
+    fn node_in_structure(&self, node: usize) -> usize {
+        self.node_of[node].unwrap_or_default()
+    }
+
+    fn edge_in_structure(&self, mut edge: Edge) -> Edge {
+        let node = |node: usize| self.node_in_structure(node);
         edge.nodes.iter_mut().for_each(|at| *at = node(*at));
         for side in &mut edge.sides {
             side.element = self.element_of[side.element].unwrap_or_default();
@@ -46,6 +51,16 @@ impl MeshPart {
             side.middle = side.middle.map(node);
         }
         edge
+    }
+
+    fn face_in_structure(&self, mut face: Face) -> Face {
+        let node = |node: &mut usize| *node = self.node_in_structure(*node);
+        face.nodes.iter_mut().for_each(node);
+        for side in &mut face.sides {
+            side.element = self.element_of[side.element].unwrap_or_default();
+            side.nodes.iter_mut().for_each(node);
+        }
+        face
     }
 
     /// The node or edge that `name` (the whole of what stands there) means; `rest` follows the id.
@@ -60,27 +75,17 @@ impl MeshPart {
             );
             return None;
         };
-        if self.mesh.is_solid() {
-            return self.face_spot(cursor, name);
+        let Some(group) = self.border_group(name) else { return self.by_direction(cursor, name) };
+        if let Members::NodeSet(nodes) | Members::Points(nodes) = &group.members
+            && let [node] = nodes[..]
+        {
+            return self.used(cursor, node).map(Spot::Node);
         }
-        let groups: Vec<&Group> = self.mesh.groups_named(name).collect();
-        let edges = |group: &&&Group| matches!(group.members, Members::Lines(_) | Members::Sides(_));
-        let nodes = |group: &&&Group| matches!(group.members, Members::NodeSet(_) | Members::Points(_));
-        match groups.iter().find(edges).or_else(|| groups.iter().find(nodes)).or(groups.first()) {
-            Some(group) => {
-                if let Members::NodeSet(nodes) | Members::Points(nodes) = &group.members
-                    && let [node] = nodes[..]
-                {
-                    return self.used(cursor, node).map(Spot::Node);
-                }
-                self.edge(cursor, group).map(Spot::Edge)
-            }
-            None => self.by_direction(cursor, name).map(Spot::Edge),
-        }
+        self.border_of(group).map_err(|(message, help)| cursor.problem(message, help)).ok()
     }
 
     /// What its groups bound: `edge` or `face`.
-    pub(super) fn border(&self) -> &'static str {
+    fn border(&self) -> &'static str {
         if self.mesh.is_solid() { "face" } else { "edge" }
     }
 
@@ -88,34 +93,55 @@ impl MeshPart {
         if self.mesh.is_solid() { "a face" } else { "an edge" }
     }
 
-    fn edge(&self, cursor: Cursor<'_>, group: &Group) -> Option<Edge> {
-        match self.boundary.edge(group) {
-            Ok(edge) => Some(self.in_structure(&edge)),
-            Err(fault) => {
-                let (message, help) = self.boundary.words(group, &fault);
-                cursor.problem(message, help);
-                None
-            }
-        }
+    /// The group that a name of an edge or a face means: what bounds a body before sets of nodes.
+    fn border_group<'m>(&'m self, name: &'m str) -> Option<&'m Group> {
+        let groups: Vec<&Group> = self.mesh.groups_named(name).collect();
+        let bounds = |group: &&&Group| match group.members {
+            Members::Lines(_) => !self.mesh.is_solid(),
+            Members::Areas(_) => self.mesh.is_solid(),
+            Members::Sides(_) => true,
+            _ => false,
+        };
+        let nodes = |group: &&&Group| matches!(group.members, Members::NodeSet(_) | Members::Points(_));
+        groups.iter().find(bounds).or_else(|| groups.iter().find(nodes)).or(groups.first()).copied()
     }
 
-    /// The part of the outer boundary that looks one way.
-    fn by_direction(&self, cursor: Cursor<'_>, name: &str) -> Option<Edge> {
+    /// The edge or face that a group is, or why it is none and what to do.
+    fn border_of(&self, group: &Group) -> Result<Spot, (String, String)> {
+        if self.mesh.is_solid() {
+            let face = self.surface.face(group).map_err(|fault| self.surface.words(group, &fault))?;
+            return Ok(Spot::Face(self.face_in_structure(face)));
+        }
+        let edge = self.boundary.edge(group).map_err(|fault| self.boundary.words(group, &fault))?;
+        Ok(Spot::Edge(self.edge_in_structure(edge)))
+    }
+
+    /// The part of the outer boundary, or of the surface, that looks one way.
+    fn by_direction(&self, cursor: Cursor<'_>, name: &str) -> Option<Spot> {
+        if self.mesh.is_solid() {
+            let face = self.piece(cursor, name, "surface", self.surface.facing())?;
+            return Some(Spot::Face(self.face_in_structure(face.clone())));
+        }
+        let edge = self.piece(cursor, name, "boundary", self.boundary.facing())?;
+        Some(Spot::Edge(self.edge_in_structure(edge.clone())))
+    }
+
+    /// The one piece that a name means.
+    fn piece<'p, P>(&self, cursor: Cursor<'_>, name: &str, outside: &str, facing: &'p [Facing<P>]) -> Option<&'p P> {
         if self.is_nearly_a_group(name) {
             self.unknown_group(cursor, name);
             return None;
         }
-        let facing = self.boundary.facing();
         if let Some(found) = facing.iter().find(|facing| facing.name == name) {
-            return Some(self.in_structure(&found.edge));
+            return Some(&found.piece);
         }
         let pieces: Vec<&str> =
-            facing.iter().filter(|facing| DIRECTIONS[facing.direction] == name).map(|f| f.name.as_str()).collect();
+            facing.iter().filter(|facing| facing.direction == name).map(|facing| facing.name.as_str()).collect();
         if pieces.is_empty() {
             self.unknown_group(cursor, name);
         } else {
             cursor.problem(
-                format!("the boundary of \"{}\" that looks to the {name} is in {} pieces", self.id, pieces.len()),
+                format!("the {outside} of \"{}\" that looks to the {name} is in {} pieces", self.id, pieces.len()),
                 format!("expected {}", self.names(&pieces)),
             );
         }
@@ -123,17 +149,17 @@ impl MeshPart {
     }
 
     /// Whether a group has this name in other letters, or one without members: then the direction is hardly meant.
-    pub(super) fn is_nearly_a_group(&self, name: &str) -> bool {
+    fn is_nearly_a_group(&self, name: &str) -> bool {
         self.mesh.groups.iter().any(|group| group.name.eq_ignore_ascii_case(name))
             || self.mesh.empty_group(name).is_some()
     }
 
-    pub(super) fn names(&self, names: &[&str]) -> String {
+    fn names(&self, names: &[&str]) -> String {
         let names: Vec<String> = names.iter().map(|name| format!("\"{}.{name}\"", self.id)).collect();
         listed(&names.iter().map(String::as_str).collect::<Vec<_>>())
     }
 
-    pub(super) fn unknown_group(&self, cursor: Cursor<'_>, name: &str) {
+    fn unknown_group(&self, cursor: Cursor<'_>, name: &str) {
         if let Some(place) = self.mesh.empty_group(name) {
             cursor.problem(
                 format!("the group {} ({}) is empty: nothing of the mesh is in it", quoted(name), self.mesh.at(place)),
@@ -155,9 +181,9 @@ impl MeshPart {
             })
             .map(|group| group.name.as_str())
             .collect();
-        if known.is_empty() && self.mesh.is_solid() {
-            known = self.facing_names();
-        } else if known.is_empty() {
+        if known.is_empty() {
+            // Of the other one there is nothing.
+            known.extend(self.surface.facing().iter().map(|facing| facing.name.as_str()));
             known.extend(self.boundary.facing().iter().map(|facing| facing.name.as_str()));
         }
         let file = &self.mesh.files[0];
@@ -186,7 +212,7 @@ impl MeshPart {
         }
     }
 
-    pub(super) fn used(&self, cursor: Cursor<'_>, node: u32) -> Option<usize> {
+    fn used(&self, cursor: Cursor<'_>, node: u32) -> Option<usize> {
         let found = self.node_of[node as usize];
         if found.is_none() {
             let node = &self.mesh.nodes[node as usize];
@@ -202,28 +228,14 @@ impl MeshPart {
     /// nothing is named so, or none of its nodes is used.
     pub fn node_set(&self, rest: &str) -> Option<Vec<usize>> {
         let name = rest.strip_prefix('.')?;
-        if self.mesh.is_solid() {
-            let mut seen = HashSet::new();
-            let nodes: Vec<usize> = self.face_nodes(name).into_iter().filter(|node| seen.insert(*node)).collect();
-            return (!nodes.is_empty()).then_some(nodes);
-        }
-        let groups: Vec<&Group> = self.mesh.groups_named(name).collect();
-        let lines = groups.iter().find(|group| matches!(group.members, Members::Lines(_) | Members::Sides(_)));
-        let set = groups.iter().find(|group| matches!(group.members, Members::NodeSet(_) | Members::Points(_)));
-        let mut nodes = match lines.or(set) {
-            Some(group) => match (self.boundary.edge(group), &group.members) {
-                (_, Members::NodeSet(nodes) | Members::Points(nodes)) => self.used_of(nodes),
-                (Ok(edge), _) => self.in_structure(&edge).nodes,
-                (Err(_), Members::Lines(lines)) => {
-                    let nodes = lines.iter().flat_map(|line| self.mesh.elements[*line as usize].nodes.iter().copied());
-                    self.used_of(&nodes.collect::<Vec<u32>>())
-                }
-                (Err(_), _) => self.used_of(&self.boundary.nodes_of_sides(group)),
-            },
+        let mut nodes = match self.border_group(name) {
+            Some(group) => self.nodes_of(group),
             None if self.is_nearly_a_group(name) => return None,
             None => {
-                let pieces = self.boundary.facing().iter().filter(|facing| DIRECTIONS[facing.direction] == name);
-                pieces.flat_map(|facing| self.in_structure(&facing.edge).nodes).collect()
+                let edges = self.boundary.facing().iter().filter(|facing| facing.is_named(name));
+                let faces = self.surface.facing().iter().filter(|facing| facing.is_named(name));
+                let nodes = edges.flat_map(|edge| &edge.piece.nodes).chain(faces.flat_map(|face| &face.piece.nodes));
+                nodes.map(|node| self.node_in_structure(*node)).collect()
             }
         };
         let mut seen = HashSet::new();
@@ -231,7 +243,24 @@ impl MeshPart {
         (!nodes.is_empty()).then_some(nodes)
     }
 
-    pub(super) fn used_of(&self, nodes: &[u32]) -> Vec<usize> {
+    /// The nodes of a group of nodes, of an edge or a face, or of what bounds a body and is none; none of bodies.
+    fn nodes_of(&self, group: &Group) -> Vec<usize> {
+        if let Members::NodeSet(nodes) | Members::Points(nodes) = &group.members {
+            return self.used_of(nodes);
+        }
+        match (self.border_of(group), &group.members) {
+            (Ok(Spot::Edge(edge)), _) => edge.nodes,
+            (Ok(Spot::Face(face)), _) => face.nodes,
+            (_, Members::Lines(elements) | Members::Areas(elements)) if !self.mesh.is_body(group) => {
+                let nodes = elements.iter().flat_map(|index| &self.mesh.elements[*index as usize].nodes);
+                self.used_of(&nodes.copied().collect::<Vec<u32>>())
+            }
+            (_, Members::Sides(_)) if !self.mesh.is_solid() => self.used_of(&self.boundary.nodes_of_sides(group)),
+            _ => Vec::new(),
+        }
+    }
+
+    fn used_of(&self, nodes: &[u32]) -> Vec<usize> {
         nodes.iter().filter_map(|node| self.node_of[*node as usize]).collect()
     }
 

@@ -18,7 +18,6 @@ mod matrix_file;
 mod matrix_market;
 mod measured;
 mod mesh_elements;
-mod mesh_faces;
 mod mesh_names;
 mod meshes;
 mod names;

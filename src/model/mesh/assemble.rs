@@ -80,6 +80,7 @@ pub fn mesh(raw: RawMesh) -> Result<Mesh, Vec<MeshProblem>> {
         format: raw.format,
         nodes: raw.nodes,
         elements,
+        dimension,
         groups,
         empty_groups,
         ignores_case: raw.ignores_case,

@@ -7,6 +7,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Deref;
 
 use super::chain::{chains, oriented, signed_area};
+use super::facing::Facing;
 use super::{Group, Members, Mesh, MeshElement};
 use crate::model::edge::{ChainError, Edge, EdgeSide, Sides};
 
@@ -34,17 +35,7 @@ pub enum EdgeFault {
 }
 
 /// The directions by which a boundary without groups is named: by its outward normal.
-pub const DIRECTIONS: [&str; 4] = ["bottom", "top", "left", "right"];
-
-/// A piece of the outer boundary that faces one way.
-pub struct Facing {
-    /// Index into [`DIRECTIONS`].
-    pub direction: usize,
-    /// `top`, or `top1`, `top2` … where there are several.
-    pub name: String,
-    /// The piece.
-    pub edge: Edge,
-}
+const DIRECTIONS: [&str; 4] = ["bottom", "top", "left", "right"];
 
 /// The sides of a mesh, and the edges found among them.
 pub struct Boundary<M> {
@@ -52,7 +43,7 @@ pub struct Boundary<M> {
     sides: Sides,
     /// The sides of one element only.
     outer: OnceCell<Vec<EdgeSide>>,
-    facing: OnceCell<Vec<Facing>>,
+    facing: OnceCell<Vec<Facing<Edge>>>,
 }
 
 fn usizes(nodes: &[u32]) -> Vec<usize> {
@@ -200,12 +191,12 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
 
     /// The pieces of the outer boundary (holes have none) by the direction of their outward normals, those of one
     /// direction from left to right, then from below.
-    pub fn facing(&self) -> &[Facing] {
+    pub fn facing(&self) -> &[Facing<Edge>] {
         self.facing.get_or_init(|| self.find_facing())
     }
 
-    fn find_facing(&self) -> Vec<Facing> {
-        let mut found: Vec<Facing> = Vec::new();
+    fn find_facing(&self) -> Vec<Facing<Edge>> {
+        let mut found: [Vec<Edge>; DIRECTIONS.len()] = Default::default();
         for ring in self.outer_rings() {
             let directions: Vec<usize> = ring.iter().map(|side| self.direction(side)).collect();
             let n = ring.len();
@@ -221,27 +212,20 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
                 if k + 1 == n || directions[next] != directions[here] {
                     let corners = oriented(std::mem::take(&mut run), &|node| self.position(node));
                     if let Ok(edge) = self.sides.chain(&corners) {
-                        found.push(Facing { direction: directions[here], name: String::new(), edge });
+                        found[directions[here]].push(edge);
                     }
                 }
             }
         }
-        let start = |facing: &Facing| self.position(facing.edge.nodes[0]);
-        found.sort_by(|a, b| {
-            let ([ax, ay], [bx, by]) = (start(a), start(b));
-            a.direction.cmp(&b.direction).then(ax.total_cmp(&bx)).then(ay.total_cmp(&by))
-        });
-        let mut counts = [0; DIRECTIONS.len()];
-        found.iter().for_each(|facing| counts[facing.direction] += 1);
-        let mut number = [0; DIRECTIONS.len()];
-        for Facing { direction, name, .. } in &mut found {
-            number[*direction] += 1;
-            *name = match counts[*direction] {
-                1 => DIRECTIONS[*direction].to_owned(),
-                _ => format!("{}{}", DIRECTIONS[*direction], number[*direction]),
-            };
-        }
-        found
+        let start = |edge: &Edge| self.position(edge.nodes[0]);
+        let in_order = |mut edges: Vec<Edge>| {
+            edges.sort_by(|a, b| {
+                let ([ax, ay], [bx, by]) = (start(a), start(b));
+                ax.total_cmp(&bx).then(ay.total_cmp(&by))
+            });
+            edges
+        };
+        DIRECTIONS.into_iter().zip(found).flat_map(|(word, edges)| Facing::named(word, in_order(edges))).collect()
     }
 
     /// Where a side in the sense of its element looks; at 45° up or down.

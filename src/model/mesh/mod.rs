@@ -8,6 +8,7 @@ mod abaqus;
 mod assemble;
 pub mod boundary;
 pub mod chain;
+pub mod facing;
 mod file;
 mod gmsh;
 pub mod overview;
@@ -176,6 +177,8 @@ pub struct Mesh {
     pub nodes: Vec<MeshNode>,
     /// Lines, areas and solids, each once.
     pub elements: Vec<MeshElement>,
+    /// The largest dimension of an element; 0 without elements.
+    pub dimension: u8,
     /// Groups that have members, in the order of the file.
     pub groups: Vec<Group>,
     /// Names of groups that have none, and where they stand.
@@ -213,6 +216,15 @@ impl Mesh {
     /// The groups of this name.
     pub fn groups_named<'m>(&'m self, name: &'m str) -> impl Iterator<Item = &'m Group> {
         self.groups.iter().filter(move |group| self.same_name(&group.name, name))
+    }
+
+    /// Whether its bodies consist of what a group has.
+    pub fn is_body(&self, group: &Group) -> bool {
+        match group.members {
+            Members::Areas(_) => !self.is_solid(),
+            Members::Solids(_) => true,
+            _ => false,
+        }
     }
 
     /// Where a group of this name stands in which nothing is.
@@ -257,17 +269,12 @@ impl Mesh {
 
     /// Whether its bodies are solids.
     pub fn is_solid(&self) -> bool {
-        self.dimension() == 3
-    }
-
-    /// The largest dimension of its elements.
-    pub fn dimension(&self) -> u8 {
-        self.elements.iter().map(|element| element.shape.dimension()).max().unwrap_or(0)
+        self.dimension == 3
     }
 
     /// Indices of the elements that its bodies consist of: its solids, or its areas.
     pub fn of_bodies(&self) -> impl Iterator<Item = u32> {
-        let of = self.dimension().max(2);
+        let of = self.dimension.max(2);
         self.elements
             .iter()
             .zip(0..)

@@ -107,7 +107,7 @@ impl Overview {
             let surface = Surface::of(mesh);
             let groups = mesh.groups.iter().map(|group| group_of_solids(group, mesh, &surface, &nodes)).collect();
             let pieces = surface.facing().iter().map(|facing| {
-                let face = &facing.face;
+                let face = &facing.piece;
                 PieceView { name: facing.name.clone(), nodes: face.nodes.len(), measure: face.area(&nodes) }
             });
             let pieces: Vec<PieceView> = pieces.collect();
@@ -117,7 +117,7 @@ impl Overview {
             let boundary = Boundary::of(mesh);
             let groups = mesh.groups.iter().map(|group| group_of_areas(group, mesh, &boundary, &nodes)).collect();
             let pieces = boundary.facing().iter().map(|facing| {
-                let edge = &facing.edge;
+                let edge = &facing.piece;
                 PieceView { name: facing.name.clone(), nodes: edge.nodes.len(), measure: edge.length(&nodes) }
             });
             (groups, pieces.collect(), size, None)

@@ -67,9 +67,9 @@ fn groups_of_areas_are_faces() {
     let facing: Vec<(&str, usize, f64)> = surface
         .facing()
         .iter()
-        .map(|facing| (facing.name.as_str(), facing.face.nodes.len(), facing.face.area(&places).round()))
+        .map(|facing| (facing.name.as_str(), facing.piece.nodes.len(), facing.piece.area(&places).round()))
         .collect();
-    facing.iter().zip(surface.facing()).for_each(|((.., area), facing)| near(&[facing.face.area(&places)], &[*area]));
+    facing.iter().zip(surface.facing()).for_each(|((.., area), facing)| near(&[facing.piece.area(&places)], &[*area]));
     let right =
         [("bottom", 6, 2.0), ("top", 6, 2.0), ("left", 4, 1.0), ("right", 4, 1.0), ("front", 6, 2.0), ("back", 6, 2.0)];
     assert_eq!(facing, right);
@@ -102,7 +102,7 @@ fn pieces_by_direction() {
     let surface = Surface::of(&mesh);
     let names: Vec<&str> = surface.facing().iter().map(|facing| facing.name.as_str()).collect();
     assert_eq!(names[..4], ["bottom1", "bottom2", "top1", "top2"]);
-    assert_eq!(tags(&mesh, &surface.facing()[0].face.nodes), [21, 22, 23, 24]);
+    assert_eq!(tags(&mesh, &surface.facing()[0].piece.nodes), [21, 22, 23, 24]);
 }
 
 /// Surfaces and node sets of .inp files; faces of the element that was turned keep what they are.

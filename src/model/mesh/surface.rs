@@ -6,6 +6,7 @@ use std::cell::OnceCell;
 use std::collections::HashSet;
 use std::ops::Deref;
 
+use super::facing::Facing;
 use super::{Group, Members, Mesh, MeshNode};
 use crate::model::face::{Face, FaceSide};
 use crate::model::faces::{Faces, corners};
@@ -26,23 +27,13 @@ pub enum FaceFault {
 }
 
 /// The directions by which a surface without groups is named: by its outward normal.
-pub const DIRECTIONS: [&str; 6] = ["bottom", "top", "left", "right", "front", "back"];
-
-/// A piece of the surface that faces one way.
-pub struct Facing {
-    /// Index into [`DIRECTIONS`].
-    pub direction: usize,
-    /// `top`, or `top1`, `top2` … where there are several.
-    pub name: String,
-    /// The piece.
-    pub face: Face,
-}
+const DIRECTIONS: [&str; 6] = ["bottom", "top", "left", "right", "front", "back"];
 
 /// The sides of the solids of a mesh, and the faces found among them.
 pub struct Surface<M> {
     mesh: M,
     faces: Faces,
-    facing: OnceCell<Vec<Facing>>,
+    facing: OnceCell<Vec<Facing<Face>>>,
 }
 
 fn usizes(nodes: &[u32]) -> Vec<usize> {
@@ -127,14 +118,14 @@ impl<M: Deref<Target = Mesh>> Surface<M> {
 
     /// The pieces of the surface by the direction of their outward normals, those of one direction by their first node
     /// from left to right, then from the front, then from below.
-    pub fn facing(&self) -> &[Facing] {
+    pub fn facing(&self) -> &[Facing<Face>] {
         self.facing.get_or_init(|| self.find_facing())
     }
 
-    fn find_facing(&self) -> Vec<Facing> {
+    fn find_facing(&self) -> Vec<Facing<Face>> {
         let surface = self.faces.surface();
-        let mut found: Vec<Facing> = Vec::new();
-        for (direction, word) in DIRECTIONS.iter().enumerate() {
+        let mut found = Vec::new();
+        for (direction, word) in DIRECTIONS.into_iter().enumerate() {
             let sides: Vec<&FaceSide> =
                 surface.iter().copied().filter(|side| self.direction(side) == direction).collect();
             let mut groups = Groups::new(self.mesh.nodes.len());
@@ -149,13 +140,7 @@ impl<M: Deref<Target = Mesh>> Surface<M> {
                 places.fold([f64::INFINITY; 3], |least, at| if at < least { at } else { least })
             };
             pieces.sort_by(|a, b| first(a).partial_cmp(&first(b)).unwrap_or(std::cmp::Ordering::Equal));
-            for (number, face) in pieces.into_iter().enumerate() {
-                let name = match count {
-                    1 => (*word).to_owned(),
-                    _ => format!("{word}{}", number + 1),
-                };
-                found.push(Facing { direction, name, face });
-            }
+            found.extend(Facing::named(word, pieces));
         }
         found
     }

@@ -62,7 +62,7 @@ fn gmsh_2() {
     assert_eq!(ids(&mesh, &edge.nodes), [10, 20, 30]);
     assert!(edge.sides.iter().all(|side| !side.reversed));
     let facing: Vec<(&str, Vec<u64>)> =
-        boundary.facing().iter().map(|f| (f.name.as_str(), ids(&mesh, &f.edge.nodes))).collect();
+        boundary.facing().iter().map(|f| (f.name.as_str(), ids(&mesh, &f.piece.nodes))).collect();
     assert_eq!(
         facing,
         [("bottom", vec![10, 20, 30]), ("top", vec![40, 50, 60]), ("left", vec![10, 40]), ("right", vec![30, 60])]
