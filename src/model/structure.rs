@@ -144,12 +144,11 @@ impl Structure {
         if let Some(element) = self.mesh_element(name) {
             return Some(element);
         }
-        let (id, indices) = name.strip_suffix('}')?.split_once('{')?;
+        let (id, within) = name.strip_suffix('}')?.split_once('{')?;
         if let Some(brick) = self.bricks.iter().find(|brick| brick.id == id) {
-            return brick.element(three_indices(indices)?);
+            return brick.element(indices(within)?);
         }
-        let (i, j) = indices.split_once(',')?;
-        let (i, j): (usize, usize) = (i.parse().ok()?, j.parse().ok()?);
+        let [i, j] = indices(within)?;
         let plate = self.plates.iter().find(|plate| plate.id == id)?;
         let columns = plate.columns();
         let index = plate.elements.start + j.checked_mul(columns)?.checked_add(i)?;
@@ -183,8 +182,8 @@ impl Structure {
     }
 }
 
-/// `i,j,k`.
-pub fn three_indices(text: &str) -> Option<[usize; 3]> {
+/// `i,j` or `i,j,k`.
+pub fn indices<const COUNT: usize>(text: &str) -> Option<[usize; COUNT]> {
     let index = |digits: &str| {
         let plain = digits.bytes().all(|byte| byte.is_ascii_digit());
         digits.parse::<usize>().ok().filter(|_| plain)

@@ -1,5 +1,7 @@
 //! What the names of a file mean: nodes, edges, plates and elements.
 
+use std::collections::HashMap;
+
 use super::builder::Builder;
 use super::mesh_names::MeshPart;
 use super::reader::Cursor;
@@ -9,7 +11,7 @@ use crate::model::brick::{Brick, BrickSide};
 use crate::model::edge::Edge;
 use crate::model::face::Face;
 use crate::model::plate::PlateSide;
-use crate::model::structure::{Dimension, three_indices};
+use crate::model::structure::{Dimension, indices};
 
 impl<'d> Builder<'d> {
     /// The node or edge that a string names.
@@ -41,9 +43,9 @@ impl<'d> Builder<'d> {
             };
             return Some(Spot::Edge(side.edge(&self.structure.plates[plate])));
         }
-        if let Some((id, indices)) = name.strip_suffix(']').and_then(|rest| rest.split_once('[')) {
+        if let Some((id, within)) = name.strip_suffix(']').and_then(|rest| rest.split_once('[')) {
             let plate = self.plate(cursor, id, name)?;
-            let node = self.plate_node(plate, indices);
+            let node = self.plate_node(plate, within);
             if node.is_none() {
                 let grid = &self.structure.plates[plate].nodes;
                 cursor.problem(
@@ -76,9 +78,9 @@ impl<'d> Builder<'d> {
             };
             return Some(Spot::Face(side.face(brick)));
         }
-        if let Some((id, indices)) = name.strip_suffix(']').and_then(|rest| rest.split_once('[')) {
+        if let Some((id, within)) = name.strip_suffix(']').and_then(|rest| rest.split_once('[')) {
             let brick = self.brick(cursor, id, name)?;
-            let node = three_indices(indices).and_then(|at| brick.node(at));
+            let node = indices(within).and_then(|at| brick.node(at));
             if node.is_none() {
                 let [nx, ny, nz] = brick.divisions;
                 cursor.problem(
@@ -93,18 +95,27 @@ impl<'d> Builder<'d> {
     }
 
     fn brick(&self, cursor: Cursor<'d>, id: &str, name: &str) -> Option<&Brick> {
-        let brick = self.bricks.get(id).map(|&brick| &self.structure.bricks[brick]);
-        if brick.is_none() && !self.broken.contains(id) {
-            let hint = did_you_mean(id, self.bricks.keys().copied());
-            let mut known: Vec<&str> = self.bricks.keys().copied().collect();
+        self.grid("brick", &self.bricks, cursor, id, name).map(|brick| &self.structure.bricks[brick])
+    }
+
+    fn plate(&self, cursor: Cursor<'d>, id: &str, name: &str) -> Option<usize> {
+        self.grid("plate", &self.plates, cursor, id, name)
+    }
+
+    /// The plate or brick `id` with which `name` begins.
+    fn grid(&self, what: &str, all: &HashMap<&str, usize>, cursor: Cursor<'d>, id: &str, name: &str) -> Option<usize> {
+        let found = all.get(id).copied();
+        if found.is_none() && !self.broken.contains(id) {
+            let hint = did_you_mean(id, all.keys().copied());
+            let mut known: Vec<&str> = all.keys().copied().collect();
             known.sort_unstable();
             let help = match &known[..] {
-                [] => "the structure has no bricks".into(),
+                [] => format!("the structure has no {what}s"),
                 known => format!("expected {}", listed(known)),
             };
-            cursor.problem(format!("unknown brick {} in {}{hint}", quoted(id), quoted(name)), help);
+            cursor.problem(format!("unknown {what} {} in {}{hint}", quoted(id), quoted(name)), help);
         }
-        brick
+        found
     }
 
     /// The mesh that a name begins with, and what follows its id.
@@ -137,23 +148,9 @@ impl<'d> Builder<'d> {
         }
     }
 
-    fn plate(&self, cursor: Cursor<'d>, id: &str, name: &str) -> Option<usize> {
-        let plate = self.plates.get(id).copied();
-        if plate.is_none() && !self.broken.contains(id) {
-            let hint = did_you_mean(id, self.plates.keys().copied());
-            cursor.problem(format!("unknown plate {} in {}{hint}", quoted(id), quoted(name)), self.known_plates());
-        }
-        plate
-    }
-
-    fn plate_node(&self, plate: usize, indices: &str) -> Option<usize> {
-        let (i, j) = indices.split_once(',')?;
-        let index = |digits: &str| {
-            let plain = digits.bytes().all(|byte| byte.is_ascii_digit());
-            digits.parse::<usize>().ok().filter(|_| plain)
-        };
-        let row = self.structure.plates[plate].nodes.get(index(j)?)?;
-        row.get(index(i)?).copied()
+    fn plate_node(&self, plate: usize, within: &str) -> Option<usize> {
+        let [i, j] = indices(within)?;
+        self.structure.plates[plate].nodes.get(j)?.get(i).copied()
     }
 
     fn unknown_spot(&self, cursor: Cursor<'d>, name: &str) {
@@ -162,9 +159,13 @@ impl<'d> Builder<'d> {
             return;
         }
         if self.meshes.contains_key(name) {
+            let (border, of) = match self.structure.dimension {
+                Dimension::Plane => ("an edge", "lines"),
+                Dimension::Space => ("a face", "areas"),
+            };
             cursor.problem(
-                format!("\"{name}\" is a mesh, expected a node or an edge"),
-                format!("name one of its nodes, \"{name}/17\", or groups of lines, \"{name}.GROUP\""),
+                format!("\"{name}\" is a mesh, expected a node or {border}"),
+                format!("name one of its nodes, \"{name}/17\", or groups of {of}, \"{name}.GROUP\""),
             );
             return;
         }
@@ -208,12 +209,6 @@ impl<'d> Builder<'d> {
         cursor.problem(format!("unknown node {}{hint}", quoted(name)), help);
     }
 
-    fn known_plates(&self) -> String {
-        let mut known: Vec<&str> = self.plates.keys().copied().collect();
-        known.sort_unstable();
-        if known.is_empty() { "the structure has no plates".into() } else { format!("expected {}", listed(&known)) }
-    }
-
     /// The node that a string names; an edge is reported.
     pub fn node(&self, cursor: Cursor<'d>) -> Option<usize> {
         match self.spot(cursor)? {
@@ -221,7 +216,10 @@ impl<'d> Builder<'d> {
             other => {
                 cursor.problem(
                     format!("expected a node, found the {} {}", other.word(), cursor.quoted()),
-                    "name one node, e.g. a plate node \"lower[0,8]\"",
+                    match self.structure.dimension {
+                        Dimension::Plane => "name one node, e.g. a plate node \"lower[0,8]\"",
+                        Dimension::Space => "name one node, e.g. a node of a brick \"lower[0,8,2]\"",
+                    },
                 );
                 None
             }
