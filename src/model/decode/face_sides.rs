@@ -16,7 +16,7 @@ pub fn of_face<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
     };
     let against = fields.required("against")?;
     let face = face?;
-    refuse_quadratic(at, &face)?;
+    refuse_quadratic(at, &face, "pairs of nodes")?;
     let shares = face.nodal_areas(&builder.structure.nodes);
     if against.string()? == GROUND {
         let nodes = face.nodes.clone();
@@ -31,7 +31,7 @@ pub fn of_face<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
         return None;
     }
     let other = builder.face(against)?;
-    refuse_quadratic(against, &other)?;
+    refuse_quadratic(against, &other, "pairs of nodes")?;
     if other.sides == face.sides {
         against.problem(
             format!("the face {} is in contact with itself", against.quoted()),
@@ -46,9 +46,9 @@ pub fn of_face<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
     Some(Sides { shares, ..Sides::new(builder, face.nodes.clone(), pairs.collect(), normals) })
 }
 
-/// Pairs of nodes carry what acts around them, and a pressure on quadratic sides is nothing at the corners of triangles
-/// and pulls at those of quadrilaterals.
-fn refuse_quadratic(at: Cursor<'_>, face: &Face) -> Option<()> {
+/// What stands at nodes carries what acts around them, and a pressure on quadratic sides is nothing at the corners of
+/// triangles and pulls at those of quadrilaterals.
+pub fn refuse_quadratic(at: Cursor<'_>, face: &Face, what: &str) -> Option<()> {
     let Some(side) = face.sides.iter().find(|side| side.nodes.len() > 4) else { return Some(()) };
     let (count, corners) = match side.nodes.len() {
         6 => (6, "nothing at all"),
@@ -56,11 +56,11 @@ fn refuse_quadratic(at: Cursor<'_>, face: &Face) -> Option<()> {
     };
     at.problem(
         format!(
-            "the face {} has sides of {count} nodes: a uniform pressure on such a side is {corners} at its corners, so pairs \
-             of nodes cannot stand for it",
+            "the face {} has sides of {count} nodes: a uniform pressure on such a side is {corners} at its corners, so \
+             {what} cannot stand for it",
             at.quoted()
         ),
-        "mesh the bodies in contact with linear elements (hexahedra of 8 nodes, tetrahedra of 4)",
+        "mesh the body there with linear elements (hexahedra of 8 nodes, tetrahedra of 4)",
     );
     None
 }

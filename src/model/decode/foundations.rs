@@ -2,6 +2,7 @@
 //! ground is a spring.
 
 use super::builder::{Builder, entries, id_of};
+use super::face_sides;
 use super::reader::{Cursor, Fields};
 use super::spot::Spot;
 use crate::model::face::Face;
@@ -139,6 +140,7 @@ fn places<'d>(builder: &Builder<'d>, on: Cursor<'d>) -> Option<Vec<Place>> {
 
 /// The nodes of a face with their inward normals and areas.
 fn over_face<'d>(builder: &Builder<'d>, on: Cursor<'d>, face: &Face) -> Option<Vec<Place>> {
+    face_sides::refuse_quadratic(on, face, "springs or pairs at nodes")?;
     let nodes = &builder.structure.nodes;
     let outward: Option<Vec<[f64; 3]>> = face.outward_normals(nodes).into_iter().collect();
     if outward.is_none() {

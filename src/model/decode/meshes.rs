@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::bars::{bar_kind, section_of};
+use super::bricks::solid_material;
 use super::builder::{Builder, id_of, material_of};
 use super::plates::{membrane, modes};
 use super::reader::{Cursor, Entry, Fields};
@@ -216,7 +217,7 @@ fn group_of<'m>(mesh: &'m Mesh, entry: &Entry<'_>, is_line: bool) -> Option<&'m 
     let name = entry.name();
     let fits = |group: &Group| match group.members {
         Members::Lines(_) => is_line,
-        _ => !is_line && is_body(mesh, group),
+        _ => !is_line && mesh.is_body(group),
     };
     let all: Vec<&Group> = mesh.groups.iter().filter(|group| mesh.same_name(&group.name, name)).collect();
     if let Some(group) = all.iter().find(|group| fits(group)) {
@@ -251,7 +252,7 @@ fn group_of<'m>(mesh: &'m Mesh, entry: &Entry<'_>, is_line: bool) -> Option<&'m 
             let known = mesh
                 .groups
                 .iter()
-                .filter(|group| is_body(mesh, group) || matches!(group.members, Members::Lines(_)) && !mesh.is_solid());
+                .filter(|group| mesh.is_body(group) || matches!(group.members, Members::Lines(_)) && !mesh.is_solid());
             let known: Vec<&str> = known.map(|group| group.name.as_str()).collect();
             entry.key_problem(
                 format!("{file} has no group {}{}", quoted(name), did_you_mean(name, known.iter().copied())),
@@ -265,19 +266,10 @@ fn group_of<'m>(mesh: &'m Mesh, entry: &Entry<'_>, is_line: bool) -> Option<&'m 
     None
 }
 
-/// Whether the bodies of a mesh consist of what a group has.
-fn is_body(mesh: &Mesh, group: &Group) -> bool {
-    match group.members {
-        Members::Areas(_) => !mesh.is_solid(),
-        Members::Solids(_) => true,
-        _ => false,
-    }
-}
-
 fn part<'d>(builder: &Builder<'d>, entry: Entry<'d>) -> Option<Part> {
     if builder.structure.dimension == Dimension::Space {
         let fields = entry.value().fields(&["material", "element"])?;
-        let material = material_of(builder, &fields);
+        let material = solid_material(builder, &fields);
         let incompatible = modes(&fields)?;
         return Some(Part { material: material?, kind: ElementKind::Solid { incompatible } });
     }
@@ -352,7 +344,7 @@ fn is_complete(outline: &mut MeshOutline<'_>, materials: Cursor<'_>, rest: Optio
         true => "{ \"material\": … }",
         false => "{ \"material\": …, \"thickness\": …, \"plane\": … }",
     };
-    for group in mesh.groups.iter().filter(|group| group.is_named && is_body(&mesh, group)) {
+    for group in mesh.groups.iter().filter(|group| group.is_named && mesh.is_body(group)) {
         let (Members::Areas(members) | Members::Solids(members)) = &group.members else { continue };
         let without = |index: &&u32| outline.parts[**index as usize].is_none() && !named[**index as usize];
         let first = members.iter().find(without).copied();
