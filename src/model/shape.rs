@@ -170,16 +170,7 @@ impl Shape {
     }
 
     fn is_quadratic_clockwise(self, nodes: &[Point]) -> Result<bool, ShapeFault> {
-        let signs: Vec<i8> = self.places().map(|[s, t]| self.sign_of_jacobian(nodes, s, t)).collect();
-        if signs.iter().all(|sign| *sign > 0) {
-            Ok(false)
-        } else if signs.iter().all(|sign| *sign < 0) {
-            Ok(true)
-        } else if signs.iter().all(|sign| *sign == 0) {
-            Err(ShapeFault::NoArea)
-        } else {
-            Err(ShapeFault::Folded)
-        }
+        is_negative(self.places().map(|[s, t]| self.sign_of_jacobian(nodes, s, t)))
     }
 
     /// Where the Jacobian is looked at: a grid that holds the nodes, and the integration points of the quadrilateral
@@ -230,14 +221,7 @@ impl Shape {
         let det = cross(along_s, along_t);
         // Every coordinate is known to half a unit of its last digit; eight nodes with factors up to 4 meet in a tangent.
         let coordinate = nodes.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let rounding = 16.0 * f64::EPSILON * coordinate * (norm(along_s) + norm(along_t));
-        if det > rounding {
-            1
-        } else if det < -rounding {
-            -1
-        } else {
-            0
-        }
+        sign(det, 16.0 * f64::EPSILON * coordinate * (norm(along_s) + norm(along_t)))
     }
 
     /// The nodes in the other sense of rotation, from the same first corner.
@@ -282,6 +266,33 @@ impl Shape {
             0.5 * cross(a, b) + bulge
         };
         (0..n).map(of_side).sum()
+    }
+}
+
+/// Sign of a Jacobian; 0 where it is no more than its rounding.
+pub(super) fn sign(det: f64, rounding: f64) -> i8 {
+    match det {
+        det if det > rounding => 1,
+        det if det < -rounding => -1,
+        _ => 0,
+    }
+}
+
+/// Whether the Jacobian is negative everywhere, by its signs.
+///
+/// # Errors
+/// It is zero everywhere, or changes its sign.
+pub(super) fn is_negative(signs: impl Iterator<Item = i8>) -> Result<bool, ShapeFault> {
+    let signs: Vec<i8> = signs.collect();
+    let all = |sign: i8| signs.iter().all(|other| *other == sign);
+    if all(1) {
+        Ok(false)
+    } else if all(-1) {
+        Ok(true)
+    } else if all(0) {
+        Err(ShapeFault::NoArea)
+    } else {
+        Err(ShapeFault::Folded)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Shapes of solids: their faces and sides, whether their nodes are in order, how good they are.
 
-use super::shape::{Shape, ShapeFault, coincident};
+use super::shape::{Shape, ShapeFault, coincident, is_negative, sign};
 use super::shape_functions::SolidShape;
 use super::vector::{cross, dot, length, way};
 
@@ -52,16 +52,7 @@ impl Shape {
     pub fn is_inside_out(self, nodes: &[[f64; 3]]) -> Result<bool, ShapeFault> {
         coincident(nodes)?;
         let functions = SolidShape::of(self.nodes());
-        let signs: Vec<i8> = places(functions).into_iter().map(|at| sign(functions, nodes, at)).collect();
-        if signs.iter().all(|sign| *sign > 0) {
-            Ok(false)
-        } else if signs.iter().all(|sign| *sign < 0) {
-            Ok(true)
-        } else if signs.iter().all(|sign| *sign == 0) {
-            Err(ShapeFault::NoArea)
-        } else {
-            Err(ShapeFault::Folded)
-        }
+        is_negative(places(functions).into_iter().map(|at| sign_of_jacobian(functions, nodes, at)))
     }
 
     /// The nodes of a solid turned right side out, from the same first corner: mirrored.
@@ -152,19 +143,13 @@ fn determinant([a, b, c]: [[f64; 3]; 3]) -> f64 {
 }
 
 /// Sign of the Jacobian; 0 where it is no more than its rounding.
-fn sign(functions: SolidShape, nodes: &[[f64; 3]], at: [f64; 3]) -> i8 {
+fn sign_of_jacobian(functions: SolidShape, nodes: &[[f64; 3]], at: [f64; 3]) -> i8 {
     let rows = jacobian(functions, nodes, at);
-    let det = determinant(rows);
     // Every coordinate is known to half a unit of its last digit; up to twenty nodes with factors up to 4 meet in a
     // tangent.
     let coordinate = nodes.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
     let [a, b, c] = rows.map(length);
-    let rounding = 40.0 * f64::EPSILON * coordinate * (a * b + b * c + c * a);
-    match det {
-        det if det > rounding => 1,
-        det if det < -rounding => -1,
-        _ => 0,
-    }
+    sign(determinant(rows), 40.0 * f64::EPSILON * coordinate * (a * b + b * c + c * a))
 }
 
 #[cfg(test)]
