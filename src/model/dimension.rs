@@ -77,6 +77,12 @@ impl Dimension {
         self.components().iter().map(|&component| (self.word(component), component)).collect()
     }
 
+    /// The words in quotation marks, for messages: `"x", "y", "r"`.
+    pub fn quoted_words(self) -> String {
+        let words: Vec<String> = self.words().into_iter().map(|(word, _)| format!("\"{word}\"")).collect();
+        words.join(", ")
+    }
+
     /// Unit tangents of the plane of contact with the unit normal `n`. In the plane its t: n turned by −90°
     /// (clockwise), n = (0, 1) gives t = (1, 0). In space t1, the projection of the global x on the plane of contact (of
     /// y where n ∥ x), and t2 = n × t1.

@@ -1,9 +1,9 @@
 //! A JSON text as a tree with places: offset ↔ line and column, offset ↔ JSON path.
 
 use jsonc_parser::errors::ParseErrorKind;
-use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
+use jsonc_parser::{CollectOptions, parse_to_ast};
 
-use super::tree::{Kind, Node, Tree};
+use super::tree::{Kind, Node, OPTIONS, Tree};
 
 /// A parsed JSON text.
 pub struct Document<'t> {
@@ -20,20 +20,6 @@ pub struct SyntaxError {
     /// What to do.
     pub help: &'static str,
 }
-
-/// JSON with comments and trailing commas, nothing else.
-const OPTIONS: ParseOptions = ParseOptions {
-    allow_comments: true,
-    allow_loose_object_property_names: false,
-    allow_trailing_commas: true,
-    allow_missing_commas: false,
-    allow_single_quoted_strings: false,
-    allow_hexadecimal_numbers: false,
-    allow_unary_plus_numbers: false,
-    allow_bare_decimal_point_numbers: false,
-    allow_non_finite_numbers: false,
-    allow_extended_string_escapes: false,
-};
 
 impl<'t> Document<'t> {
     /// Parses JSON in which comments and trailing commas may stand.

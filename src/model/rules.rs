@@ -58,7 +58,15 @@ pub struct UnknownChoice {
 /// K of the friction polygon in space where nothing else is said.
 pub const FACETS: u16 = 8;
 /// Most facets: the next polygon would differ from the circle by less than 1 in 10⁴.
-pub const MOST_FACETS: u16 = 256;
+const MOST_FACETS: u16 = 256;
+
+/// Numbers of facets that a polygon can have.
+pub const FACETS_EXPECTED: &str = "an even number from 4 to 256";
+
+/// A number of facets, if a polygon can have so many: with its mirror each direction is there twice.
+pub fn facets(count: usize) -> Option<u16> {
+    u16::try_from(count).ok().filter(|facets| (4..=MOST_FACETS).contains(facets) && facets.is_multiple_of(2))
+}
 
 /// The choices together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -93,12 +101,10 @@ impl Rules {
     /// # Errors
     /// Anything else than an even number from 4 to [`MOST_FACETS`].
     pub fn set_facets(&mut self, word: &str) -> Result<(), UnknownChoice> {
-        let facets =
-            word.parse().ok().filter(|facets: &u16| (4..=MOST_FACETS).contains(facets) && facets.is_multiple_of(2));
-        self.facets = facets.ok_or_else(|| UnknownChoice {
+        self.facets = word.parse().ok().and_then(facets).ok_or_else(|| UnknownChoice {
             what: "number of facets",
             word: word.into(),
-            expected: "an even number from 4 to 256",
+            expected: FACETS_EXPECTED,
         })?;
         Ok(())
     }

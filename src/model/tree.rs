@@ -4,7 +4,31 @@
 use std::borrow::Cow;
 
 use jsonc_parser::tokens::Token;
-use jsonc_parser::{Scanner, ScannerOptions};
+use jsonc_parser::{ParseOptions, Scanner, ScannerOptions};
+
+/// JSON with comments and trailing commas, nothing else.
+pub const OPTIONS: ParseOptions = ParseOptions {
+    allow_comments: true,
+    allow_loose_object_property_names: false,
+    allow_trailing_commas: true,
+    allow_missing_commas: false,
+    allow_single_quoted_strings: false,
+    allow_hexadecimal_numbers: false,
+    allow_unary_plus_numbers: false,
+    allow_bare_decimal_point_numbers: false,
+    allow_non_finite_numbers: false,
+    allow_extended_string_escapes: false,
+};
+
+/// The part of it that belongs to tokens.
+const SCANNER: ScannerOptions = ScannerOptions {
+    allow_single_quoted_strings: OPTIONS.allow_single_quoted_strings,
+    allow_hexadecimal_numbers: OPTIONS.allow_hexadecimal_numbers,
+    allow_unary_plus_numbers: OPTIONS.allow_unary_plus_numbers,
+    allow_bare_decimal_point_numbers: OPTIONS.allow_bare_decimal_point_numbers,
+    allow_non_finite_numbers: OPTIONS.allow_non_finite_numbers,
+    allow_extended_string_escapes: OPTIONS.allow_extended_string_escapes,
+};
 
 /// As deep as values may lie in one another.
 const DEEPEST: usize = 512;
@@ -48,15 +72,7 @@ impl<'t> Tree<'t> {
         // Behind each of these stands a value, or a key.
         let most = 1 + text.bytes().filter(|byte| matches!(byte, b'{' | b'[' | b',' | b':')).count();
         let tree = Tree { text, cells: Vec::with_capacity(most), escaped: Vec::new() };
-        let options = ScannerOptions {
-            allow_single_quoted_strings: false,
-            allow_hexadecimal_numbers: false,
-            allow_unary_plus_numbers: false,
-            allow_bare_decimal_point_numbers: false,
-            allow_non_finite_numbers: false,
-            allow_extended_string_escapes: false,
-        };
-        let mut reader = Reader { tree, scanner: Scanner::new(text, &options) };
+        let mut reader = Reader { tree, scanner: Scanner::new(text, &SCANNER) };
         let first = reader.token()??;
         reader.value(first, 0)?;
         reader.token()?.is_none().then_some(reader.tree)

@@ -42,31 +42,27 @@ impl Size {
     }
 
     /// Why `rows` × `columns` does not fit: what was expected, and what to do.
-    fn check(self, rows: usize, columns: usize) -> Result<(), (String, &'static str)> {
+    fn check(self, rows: usize, columns: usize) -> Result<(), (String, String)> {
         let (fits, expected, help) = match self {
             Size::OfPairs { pairs, tangents } => {
                 let (each, count) = (1 + tangents, (1 + tangents) * pairs);
-                let help = if tangents == 1 {
-                    "rows and columns: all normals, then all tangentials"
-                } else {
-                    "rows and columns: all normals, then t1 and t2 of each pair"
-                };
+                let help = format!("rows and columns: {}", self.order());
                 (rows == count && columns == rows, format!("expected {each}m × {each}m = {count} × {count}"), help)
             }
             Size::Square => (
                 rows == columns && rows > 0,
                 "expected a square one with at least one row".into(),
-                "M has a row for each entry of q",
+                "M has a row for each entry of q".into(),
             ),
             Size::OfDofs(count) => (
                 rows == count && columns == rows,
                 format!("expected {count} × {count}: `dofs` has {count} entries"),
-                "rows and columns stand in the order of `dofs`",
+                "rows and columns stand in the order of `dofs`".into(),
             ),
             Size::Forces(count) => (
                 rows == count && columns == 1,
                 format!("expected {count} × 1: `dofs` has {count} entries"),
-                "a column of forces in the order of `dofs`",
+                "a column of forces in the order of `dofs`".into(),
             ),
         };
         if fits { Ok(()) } else { Err((expected, help)) }
@@ -122,7 +118,7 @@ pub fn entries(text: &str, size: Size) -> Result<Entries, MatrixError> {
     let sizes = words::<usize>(number, sizes, if header.coordinate { 3 } else { 2 })?;
     let (rows, columns) = (sizes[0], sizes[1]);
     size.check(rows, columns)
-        .map_err(|(expected, help)| error(number, format!("the matrix is {rows} × {columns}, {expected}"), help))?;
+        .map_err(|(expected, help)| error(number, format!("the matrix is {rows} × {columns}, {expected}"), &help))?;
     // An array has at least its lower triangle in the file, and every number two bytes.
     let claimed = if header.coordinate { sizes[2] } else { rows.saturating_mul(columns) / 2 };
     if claimed > text.len() {

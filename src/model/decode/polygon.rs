@@ -1,7 +1,7 @@
 //! `solver.facets` and `solver.cone`: how friction in space is solved.
 
 use super::reader::{Cursor, Fields};
-use crate::model::rules::{FACETS, MOST_FACETS, Rules};
+use crate::model::rules::{self, FACETS, FACETS_EXPECTED, Rules};
 
 /// Keys of the solver that belong to problems in space.
 pub const KEYS: [&str; 2] = ["facets", "cone"];
@@ -14,16 +14,10 @@ pub fn facets(fields: &Fields<'_>) -> u16 {
     let Some(found) = cursor.whole("number of facets", 4) else {
         return FACETS;
     };
-    match u16::try_from(found) {
-        Ok(facets) if facets % 2 == 0 && facets <= MOST_FACETS => facets,
-        _ => {
-            cursor.problem(
-                format!("a friction polygon cannot have {found} facets"),
-                format!("expected an even number from 4 to {MOST_FACETS}"),
-            );
-            FACETS
-        }
-    }
+    rules::facets(found).unwrap_or_else(|| {
+        cursor.problem(format!("a friction polygon cannot have {found} facets"), format!("expected {FACETS_EXPECTED}"));
+        FACETS
+    })
 }
 
 /// Whether the answer is taken from the polygon to Coulomb's cone.

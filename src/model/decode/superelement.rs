@@ -61,8 +61,7 @@ fn dofs<'d>(builder: &Builder<'d>, at: Cursor<'d>) -> Option<Vec<(usize, Compone
     let mut dofs = Vec::new();
     let mut row_of = HashMap::new();
     let mut is_right = true;
-    let words = builder.structure.dimension.words().into_iter().map(|(word, _)| format!("\"{word}\""));
-    let what = format!("a node and one of {}", words.collect::<Vec<_>>().join(", "));
+    let what = format!("a node and one of {}", builder.structure.dimension.quoted_words());
     for (row, entry) in at.list()?.enumerate() {
         let Some(words) = entry.list_of(2, &what) else {
             is_right = false;

@@ -51,15 +51,13 @@ pub fn components<'d>(
         }
     }
     if components.is_empty() && is_right {
-        cursor.problem("`fixed` is empty", format!("name any of {}, or remove the entry", words(builder).join(", ")));
+        cursor.problem(
+            "`fixed` is empty",
+            format!("name any of {}, or remove the entry", builder.structure.dimension.quoted_words()),
+        );
         return None;
     }
     is_right.then_some(components)
-}
-
-/// The words of all components, in quotation marks.
-fn words(builder: &Builder<'_>) -> Vec<String> {
-    builder.structure.dimension.words().into_iter().map(|(word, _)| format!("\"{word}\"")).collect()
 }
 
 /// A support of one component, with the case and the amount of its settlement.

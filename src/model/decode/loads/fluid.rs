@@ -2,36 +2,45 @@
 
 use super::{edge, nodal};
 use crate::model::decode::builder::Builder;
-use crate::model::decode::reader::Cursor;
+use crate::model::decode::reader::{Cursor, Fields};
 use crate::model::face::FaceSpot;
 use crate::model::structure::{Dimension, Load};
 use crate::model::uses::Region;
 
 pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
-    let in_space = builder.structure.dimension == Dimension::Space;
-    let fields = cursor.fields(&[if in_space { "face" } else { "edge" }, "level", "weight"])?;
-    let (edge, face) = match in_space {
-        true => (None, fields.required("face").and_then(|at| builder.face(at))),
-        false => (fields.required("edge").and_then(|at| edge(builder, at, "a fluid")), None),
-    };
-    let level = fields.required("level").and_then(|at| at.of(Region::Load).number());
-    let weight = fields
-        .required("weight")
-        .and_then(|at| at.number_that("the weight of a fluid per volume", "0 or more", |weight| weight >= 0.0));
-    let (level, weight) = (level?, weight?);
-    let structure = &builder.structure;
-    if let Some(face) = face {
-        let pushes = |spot: &FaceSpot| {
-            let pressure = weight * spot.depth.max(0.0);
-            spot.outward.map(|n| -pressure * n)
-        };
-        return Some(nodal(face.consistent_forces(&structure.nodes, Some(level), &pushes)));
+    if builder.structure.dimension == Dimension::Space {
+        return on_face(builder, cursor);
     }
-    let edge = edge?;
+    let fields = cursor.fields(&["edge", "level", "weight"])?;
+    let edge = fields.required("edge").and_then(|at| edge(builder, at, "a fluid"));
+    let (level, weight) = (level(&fields), weight(&fields));
+    let (edge, level, weight) = (edge?, level?, weight?);
+    let structure = &builder.structure;
     let forces = edge.consistent_forces(&structure.nodes, Some(level), &|spot| {
         let pressure = weight * (level - spot.position[1]).max(0.0);
         let thickness = structure.elements[spot.element].area();
         spot.outward.map(|n| -pressure * thickness * n)
     });
     Some(nodal(forces))
+}
+
+fn on_face<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> {
+    let fields = cursor.fields(&["face", "level", "weight"])?;
+    let face = fields.required("face").and_then(|at| builder.face(at));
+    let (level, weight) = (level(&fields), weight(&fields));
+    let (face, level, weight) = (face?, level?, weight?);
+    let pushes = |spot: &FaceSpot| {
+        let pressure = weight * spot.depth.max(0.0);
+        spot.outward.map(|n| -pressure * n)
+    };
+    Some(nodal(face.consistent_forces(&builder.structure.nodes, Some(level), &pushes)))
+}
+
+fn level(fields: &Fields<'_>) -> Option<f64> {
+    fields.required("level")?.of(Region::Load).number()
+}
+
+fn weight(fields: &Fields<'_>) -> Option<f64> {
+    let at = fields.required("weight")?;
+    at.number_that("the weight of a fluid per volume", "0 or more", |weight| weight >= 0.0)
 }

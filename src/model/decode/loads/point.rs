@@ -33,32 +33,29 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
             Some(vec![Load::Nodal { node, force, moment }])
         }
         Spot::Edge(edge) => {
-            if let Some((cursor, _)) = moment {
-                cursor.problem(
-                    "a `moment` cannot act on an edge: its nodes have no rotation",
-                    "remove it, or give a couple of forces",
-                );
-                return None;
-            }
+            refuse_moment(moment, "an edge")?;
             let nodes = &builder.structure.nodes;
             let total = edge.length(nodes);
             let per_length = force?.map(|force| force / total);
             Some(nodal(edge.consistent_forces(nodes, None, &|_| per_length)))
         }
         Spot::Face(face) => {
-            if let Some((cursor, _)) = moment {
-                cursor.problem(
-                    "a `moment` cannot act on a face: its nodes have no rotation",
-                    "remove it, or give a couple of forces",
-                );
-                return None;
-            }
+            refuse_moment(moment, "a face")?;
             let nodes = &builder.structure.nodes;
             let area = face.area(nodes);
             let per_area = force?.map(|force| force / area);
             Some(nodal(face.consistent_forces(nodes, None, &|_| per_area)))
         }
     }
+}
+
+fn refuse_moment(moment: Option<(Cursor<'_>, [f64; 3])>, what: &str) -> Option<()> {
+    let Some((cursor, _)) = moment else { return Some(()) };
+    cursor.problem(
+        format!("a `moment` cannot act on {what}: its nodes have no rotation"),
+        "remove it, or give a couple of forces",
+    );
+    None
 }
 
 fn on_bar<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<Vec<Load>> {
