@@ -128,7 +128,7 @@ impl<'v> Materials<'v> {
     fn of(structure: &Structure, file: Node<'v>) -> Materials<'v> {
         let names: Vec<&str> = keys(file, "materials").collect();
         let number: HashMap<&str, usize> = names.iter().enumerate().map(|(index, name)| (*name, index)).collect();
-        let lists = ["bars", "plates", "quads", "triangles"].iter().filter_map(|key| file.get(key));
+        let lists = ["bars", "plates", "bricks", "quads", "triangles"].iter().filter_map(|key| file.get(key));
         let material =
             |entry: Node<'v>| Some((entry.get("id")?.as_str()?, *number.get(entry.get("material")?.as_str()?)?));
         let of = lists.flat_map(Node::items).filter_map(material).collect();

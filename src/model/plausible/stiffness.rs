@@ -5,6 +5,7 @@ use super::{Warning, keys};
 use crate::model::scenario::Scenario;
 use crate::model::structure::{ElementLoad, Load, Structure};
 use crate::model::tree::Node;
+use crate::model::vector;
 
 /// Word in a material's name, Young's modulus in N/m², weight in N/m³: what such materials commonly have.
 const KNOWN: &[(&str, f64, f64)] = &[
@@ -134,12 +135,12 @@ pub fn sections(scenario: &Scenario, structure: &Structure, file: Node<'_>) -> V
     if Sizes::of(&scenario.units).is_none() {
         return Vec::new();
     }
-    let extent = [0, 1].map(|axis| {
+    let extent = [0, 1, 2].map(|axis| {
         let all = structure.nodes.iter().map(|node| node.position[axis]);
         let (least, largest) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
         largest - least
     });
-    let extent = extent[0].hypot(extent[1]);
+    let extent = vector::length(extent);
     let length = scenario.units.length.as_deref().unwrap_or_default();
     let bars: Vec<Node<'_>> = file.get("bars").into_iter().flat_map(Node::items).collect();
     let mut seen: Vec<String> = Vec::new();
