@@ -16,14 +16,14 @@ pub fn tributary_lengths(structure: &Structure) -> Vec<Option<f64>> {
     let mut lengths = vec![None; structure.pairs.len()];
     for (joint, pairs) in joints(structure) {
         let edge = structure.edge_contacts.iter().find(|edge| edge.id == joint);
-        let nodes: Vec<usize> = match edge {
-            Some(edge) => edge.nodes.clone(),
-            None => pairs.iter().map(|&(pair, _)| structure.pairs[pair].node).collect(),
-        };
         if let Some(face) = edge.filter(|edge| !edge.shares.is_empty()) {
             pairs.iter().for_each(|&(pair, index)| lengths[pair] = Some(face.shares[index]));
             continue;
         }
+        let nodes: Vec<usize> = match edge {
+            Some(edge) => edge.nodes.clone(),
+            None => pairs.iter().map(|&(pair, _)| structure.pairs[pair].node).collect(),
+        };
         if nodes.len() < 2 || may_be_closed(structure, &nodes) {
             continue;
         }

@@ -8,7 +8,7 @@ use super::spot::Spot;
 use crate::model::face::Face;
 use crate::model::pair::{Law, Pair};
 use crate::model::parameter::Number;
-use crate::model::structure::{Node, Spring};
+use crate::model::structure::{Dimension, Node, Spring};
 use crate::model::uses::Region;
 use crate::model::vector::{distance, length};
 
@@ -106,9 +106,13 @@ fn places<'d>(builder: &Builder<'d>, on: Cursor<'d>) -> Option<Vec<Place>> {
         Spot::Edge(edge) => edge,
         Spot::Face(face) => return over_face(builder, on, &face),
         other => {
+            let (border, lies) = match builder.structure.dimension {
+                Dimension::Plane => ("an edge", "along a line"),
+                Dimension::Space => ("a face", "along a bar or under a face"),
+            };
             on.problem(
-                format!("expected a bar or an edge, found the {} {}", other.word(), on.quoted()),
-                "a foundation lies along a line; at one node use `springs`",
+                format!("expected a bar or {border}, found the {} {}", other.word(), on.quoted()),
+                format!("a foundation lies {lies}; at one node use `springs`"),
             );
             return None;
         }
