@@ -13,6 +13,7 @@ use super::grid::{Grid, Shard};
 use super::sample::draw::Rule;
 use super::sweep_points::{Found, Points};
 use crate::answer::record::{Answer, State};
+use crate::model::dimension::Dimension;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
 use crate::text::hash::Hash;
@@ -155,7 +156,7 @@ impl Sweep<'_> {
         }
         let rules = self.case.rules;
         hash = hash.and(format!("{} {} {}", rules.covering, rules.tie_break, rules.engine).as_bytes());
-        if self.case.scenario.source.is_in_space() {
+        if self.case.scenario.source.dimension() == Dimension::Space {
             hash = hash.and(format!("{} {}", rules.facets, rules.cone).as_bytes());
         }
         Header {

@@ -218,7 +218,9 @@ impl Carried {
             let scenario = &self.setup.scenario;
             let misfit = match rule.name {
                 "covering" if matches!(scenario.source, Source::Lcp(_)) => Some("a bare LCP has its own"),
-                name if rules_of(scenario).all(|known| known.name != name) => Some("it is for problems in space"),
+                name if rules_of(scenario.source.dimension()).all(|known| known.name != name) => {
+                    Some("it is for problems in space")
+                }
                 _ => None,
             };
             match misfit {

@@ -242,11 +242,12 @@ impl Scene {
 /// The ordinates of values along a bar, from its axis and back to it.
 fn ordinates(bar: &BarLine, points: &[(f64, f64)], scale: f64) -> Vec<[f64; 3]> {
     let feet = bar.feet(points);
-    let tip = |((at, across), (_, value)): (&([f64; 3], [f64; 3]), &(f64, f64))| {
-        std::array::from_fn(|c| at[c] + scale * value * across[c])
-    };
+    let tips = feet
+        .iter()
+        .zip(points)
+        .map(|((at, across), (_, value))| -> [f64; 3] { std::array::from_fn(|c| at[c] + scale * value * across[c]) });
     let [first, last] = [feet.first(), feet.last()].map(|foot| foot.map(|(at, _)| *at));
-    first.into_iter().chain(feet.iter().zip(points).map(tip)).chain(last).collect()
+    first.into_iter().chain(tips).chain(last).collect()
 }
 
 /// Nodes with supports and how they are held: 3 clamped, 2 at their place, 1 in some directions.
