@@ -10,21 +10,21 @@
 use super::classes::Classes;
 use super::dof::Dofs;
 use super::error::{Holder, OverConstraint};
-use super::parts::axis;
-use crate::model::structure::{Component, Dimension, Element, Load, Structure};
+use super::idle_spins::IdleSpin;
+use crate::model::structure::{Component, Structure};
 use crate::model::vector::way;
 
 /// Σ a·u = 0 on the base dofs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyRow {
-    /// Index of the body.
-    pub body: usize,
+    /// Index of the body; `None` of a row that holds an idle spin.
+    pub body: Option<usize>,
     /// (base dof, a); the first is that of the node that follows.
     pub terms: Vec<(usize, f64)>,
 }
 
-/// The rows of all bodies.
-pub fn body_rows(structure: &Structure, dofs: &Dofs) -> Vec<BodyRow> {
+/// The rows of all bodies, then those that hold idle spins.
+pub fn body_rows(structure: &Structure, dofs: &Dofs, spins: &[IdleSpin]) -> Vec<BodyRow> {
     let mut rows = Vec::new();
     for (body, rigid) in structure.rigid.iter().enumerate() {
         let first = rigid.nodes[0];
@@ -35,46 +35,17 @@ pub fn body_rows(structure: &Structure, dofs: &Dofs) -> Vec<BodyRow> {
                 let [one, other] = component.levers(arm).map(|(rotation, lever)| (dofs.of(first, rotation), -lever));
                 let terms = [(dofs.of(node, component), 1.0), (dofs.of(first, component), -1.0), one, other];
                 let terms = terms.into_iter().filter_map(|(dof, a)| Some((dof?, a))).filter(|(_, a)| *a != 0.0);
-                rows.push(BodyRow { body, terms: terms.collect() });
+                rows.push(BodyRow { body: Some(body), terms: terms.collect() });
             }
         }
-        if let Some(axis) = idle_spin(structure, body) {
-            let terms =
-                structure.dimension.rotations().iter().map(|&about| (dofs.of(first, about), axis[about.axis()]));
-            let terms = terms.filter_map(|(dof, a)| Some((dof?, a))).filter(|(_, a)| *a != 0.0);
-            rows.push(BodyRow { body, terms: terms.collect() });
-        }
+    }
+    for spin in spins {
+        let Some(&node) = spin.nodes.first() else { continue };
+        let terms = Component::ROTATIONS.into_iter().map(|about| (dofs.of(node, about), spin.axis[about.axis()]));
+        let terms = terms.filter_map(|(dof, a)| Some((dof?, a))).filter(|(_, a)| *a != 0.0);
+        rows.push(BodyRow { body: None, terms: terms.collect() });
     }
     rows
-}
-
-/// The line about which a body in space can turn without moving or turning anything else: all its nodes lie on it, and
-/// nothing but itself has to do with its rotations. It is held there.
-pub fn idle_spin(structure: &Structure, body: usize) -> Option<[f64; 3]> {
-    if structure.dimension == Dimension::Plane {
-        return None;
-    }
-    let nodes = &structure.rigid[body].nodes;
-    let axis = axis(structure, nodes)?;
-    let is_own = |node: &usize| nodes.contains(node);
-    let turned_by_bar = |element: &Element| {
-        let ends = element.nodes.iter().enumerate();
-        element.bends()
-            && !element.nodes.iter().all(is_own)
-            && ends.filter(|(_, node)| is_own(node)).any(|(at, _)| element.components(at).contains(&Component::Rx))
-    };
-    let moment = |load: &Load| match load {
-        Load::Nodal { node, moment, .. } => *moment != [0.0; 3] && is_own(node),
-        Load::Element { .. } | Load::Settlement { .. } => false,
-    };
-    let turns = |component: &Component| component.is_rotation();
-    let is_felt = structure.elements.iter().any(turned_by_bar)
-        || structure.supports.iter().any(|support| turns(&support.component) && is_own(&support.node))
-        || structure.ties.iter().any(|tie| tie.components.iter().any(turns) && tie.nodes.iter().any(is_own))
-        || structure.springs.iter().flat_map(|s| &s.terms).any(|term| turns(&term.component) && is_own(&term.node))
-        || structure.superelement.iter().flat_map(|s| &s.dofs).any(|(node, c)| turns(c) && is_own(node))
-        || structure.load_cases.iter().flat_map(|case| &case.loads).any(moment);
-    (!is_felt).then_some(axis)
 }
 
 /// Who holds the nodes of a body so that rows of bodies repeat what others hold.
@@ -104,7 +75,7 @@ pub fn over_constraint(
             }
         }
     }
-    let mut others: Vec<usize> = involved.iter().map(|row| row.body).filter(|other| *other != body).collect();
+    let mut others: Vec<usize> = involved.iter().filter_map(|row| row.body).filter(|other| *other != body).collect();
     others.sort_unstable();
     others.dedup();
     holders.extend(others.into_iter().map(|other| Holder::Body { id: structure.rigid[other].id.clone() }));

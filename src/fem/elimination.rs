@@ -13,11 +13,13 @@ use super::body_rows::{BodyRow, body_rows, over_constraint};
 use super::classes::Classes;
 use super::dof::Dofs;
 use super::error::{DependentJoint, Holder, MainSystemError, OverConstraint};
+use super::idle_spins::{IdleSpin, idle_spins};
 use super::joint_rows::{JointReduction, JointRow, holders};
+use super::parts::Parts;
 use super::repeated::{Repeated, by_preference};
 use crate::doubled::Real;
 use crate::model::pair::{Joint, JointDirection};
-use crate::model::structure::Structure;
+use crate::model::structure::{Dimension, Structure};
 
 /// One base dof in terms of v and z.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +53,8 @@ pub struct Elimination {
     held: Vec<bool>,
     /// The rows of rigid bodies.
     bodies: Vec<BodyRow>,
+    /// The spins that are held.
+    spins: Vec<IdleSpin>,
     free: usize,
     masters: usize,
     joints: usize,
@@ -65,7 +69,7 @@ impl Elimination {
     pub fn repeated(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Vec<Repeated>, MainSystemError> {
         let classes = Classes::new(structure, dofs, joints.len());
         let mut reduction = JointReduction::default();
-        let bodies = body_rows(structure, dofs);
+        let bodies = body_rows(structure, dofs, &held_spins(structure));
         let beyond_settled = joints.len() + classes.settled.len();
         reduce_bodies(structure, dofs, &classes, &bodies, beyond_settled, &mut reduction)
             .map_err(MainSystemError::OverConstrained)?;
@@ -79,7 +83,7 @@ impl Elimination {
             }
             let mut holders = holders(structure, dofs, joints, &classes, &row, joint);
             let involved = row.joints.keys().filter_map(|row| (*row as usize).checked_sub(beyond_settled));
-            for id in involved.map(|row| &structure.rigid[bodies[row].body].id) {
+            for id in involved.filter_map(|row| Some(&structure.rigid[bodies[row].body?].id)) {
                 let holder = Holder::Body { id: id.clone() };
                 if !holders.contains(&holder) {
                     holders.push(holder);
@@ -106,7 +110,8 @@ impl Elimination {
         let is_class = |dof: usize| class[dof] as usize == dof && !held[dof];
 
         let mut reduction = JointReduction::default();
-        let bodies = body_rows(structure, dofs);
+        let spins = held_spins(structure);
+        let bodies = body_rows(structure, dofs, &spins);
         let beyond_settled = joints.len() + settled.len();
         reduce_bodies(structure, dofs, &classes, &bodies, beyond_settled, &mut reduction)
             .map_err(MainSystemError::OverConstrained)?;
@@ -157,7 +162,17 @@ impl Elimination {
             })
             .collect();
         let Classes { class, held, .. } = classes;
-        Ok(Elimination { rows, sums, class, held, bodies, free, masters: masters as usize, joints: joints.len() })
+        Ok(Elimination {
+            rows,
+            sums,
+            class,
+            held,
+            bodies,
+            spins,
+            free,
+            masters: masters as usize,
+            joints: joints.len(),
+        })
     }
 
     /// Unknowns after supports and ties, before the joints.
@@ -212,6 +227,11 @@ impl Elimination {
         };
         let many = sum.into_iter().flat_map(|sum| &sum.joints);
         many.map(|&(j, a)| (j as usize, a))
+    }
+
+    /// The idle spins that are held.
+    pub fn spins(&self) -> &[IdleSpin] {
+        &self.spins
     }
 
     /// The rows of rigid bodies.
@@ -290,6 +310,15 @@ impl Elimination {
     }
 }
 
+/// The idle spins that there are displacements for.
+fn held_spins(structure: &Structure) -> Vec<IdleSpin> {
+    let turns = || !structure.rigid.is_empty() || structure.elements.iter().any(|element| element.bends());
+    if structure.dimension == Dimension::Plane || !turns() {
+        return Vec::new();
+    }
+    idle_spins(structure, &Parts::new(structure)).into_iter().filter(|spin| !spin.nodes.is_empty()).collect()
+}
+
 /// Reduces the rows of the bodies; they are numbered from `first` on.
 ///
 /// # Errors
@@ -306,9 +335,11 @@ fn reduce_bodies(
     for (index, row) in rows.iter().enumerate() {
         let terms = row.terms.iter().map(|&(dof, a)| (usize::from(dof != row.terms[0].0), (dof, a)));
         let Err(left) = reduction.add(JointRow::of_terms(first + index, terms, classes)) else { continue };
-        if wrong.last().is_none_or(|last| last.body != row.body) {
+        // Nothing else has to do with an idle spin, so that its row cannot repeat others.
+        let Some(body) = row.body else { continue };
+        if wrong.last().is_none_or(|last| last.body != body) {
             let involved = left.joints.keys().filter_map(|other| rows.get((*other as usize).checked_sub(first)?));
-            wrong.push(over_constraint(structure, dofs, classes, row.body, &involved.collect::<Vec<_>>()));
+            wrong.push(over_constraint(structure, dofs, classes, body, &involved.collect::<Vec<_>>()));
         }
     }
     if wrong.is_empty() { Ok(()) } else { Err(wrong) }

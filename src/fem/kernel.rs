@@ -84,7 +84,15 @@ fn add_scaled(sum: &mut [[f64; 6]], factor: f64, u: &[[f64; 6]]) {
 
 /// The error that names the node that moves most.
 pub fn mechanism(structure: &Structure, u: &[[f64; 6]]) -> MainSystemError {
-    let node = most_moved(u);
+    // What a turn moves by no more than the rounding of the places does not move.
+    let farthest = structure.nodes.iter().map(|node| length(node.position)).fold(0.0, f64::max);
+    let turn = u.iter().map(|&[.., x, y, z]| length([x, y, z])).fold(0.0, f64::max);
+    let moves = |[x, y, z, ..]: &[f64; 6]| length([*x, *y, *z]) > UNFELT * turn * farthest;
+    let mut u = u.to_vec();
+    if !u.iter().any(moves) {
+        u.iter_mut().for_each(|u| u[..3].fill(0.0));
+    }
+    let node = most_moved(&u);
     MainSystemError::Mechanism {
         node,
         node_id: structure.nodes[node].id.clone(),

@@ -9,21 +9,22 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::body_rows::idle_spin;
 use super::dof::Dofs;
+use super::idle_spins::idle_spins;
 use super::null_space::{DENSE, Terms, null_basis};
-use super::parts::{Parts, axis, superelement_parts};
+use super::parts::{Parts, superelement_parts};
 use crate::model::groups::Groups;
 use crate::model::space_section::EndJoint;
 use crate::model::structure::{Component, Dimension, ElementKind, Structure};
 use crate::model::superelement::Part;
-use crate::model::vector::{distance, way};
+use crate::model::vector::{distance, unit, way};
 
 /// Singular values below this share of the largest belong to the null space, times the rounding of the coordinates
 /// beside the size of the cluster.
 const NULL: f64 = 1024.0 * f64::EPSILON;
 
-/// A motion of the whole structure, its displacements per node in the order of [`Component::ALL`], largest translation (or rotation × size) about 1.
+/// A motion of the whole structure, its displacements per node in the order of [`Component::ALL`], largest translation
+/// (or rotation × size) about 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     /// Displacements per node; 0 where there is no rotation.
@@ -45,10 +46,11 @@ pub struct LooseMotions {
 pub fn loose_motions(structure: &Structure, dofs: &Dofs) -> LooseMotions {
     let parts = Parts::new(structure);
     let clusters = parts.clusters(structure);
+    let spins: Vec<Spin> = idle_spins(structure, &parts).into_iter().map(|spin| (spin.part, spin.axis)).collect();
     let (mut motions, mut complete) = (Vec::new(), true);
     for cluster in clusters {
         let null_space = if structure.dimension.components().len() * cluster.parts.len() <= DENSE {
-            cluster.null_space(structure, dofs, &parts)
+            cluster.null_space(structure, dofs, &parts, &spins)
         } else {
             None
         };
@@ -57,12 +59,18 @@ pub fn loose_motions(structure: &Structure, dofs: &Dofs) -> LooseMotions {
             None => {
                 complete = false;
                 let (merged, cluster) = cluster.with_whole_groups(structure);
-                motions.extend(cluster.null_space(structure, dofs, &merged).unwrap_or_default());
+                // What turns inside a group is not looked at, so neither is the spin of one on a line.
+                let lines = merged.lines(structure).into_iter().zip(0..);
+                let spins: Vec<Spin> = lines.filter_map(|(axis, part)| Some((part, axis?))).collect();
+                motions.extend(cluster.null_space(structure, dofs, &merged, &spins).unwrap_or_default());
             }
         }
     }
     LooseMotions { motions, complete }
 }
+
+/// A part and the line about which it does not turn.
+type Spin = (u32, [f64; 3]);
 
 impl Parts {
     /// Parts linked by pins, ties and springs.
@@ -93,6 +101,11 @@ impl Parts {
                 clusters[index_of(node)].ties.push(i);
             }
         }
+        for (i, element) in structure.elements.iter().enumerate() {
+            if matches!(&element.kind, ElementKind::SpaceFrame { joints, .. } if joints.contains(&EndJoint::Hinge)) {
+                clusters[index_of(element.nodes[0])].hinged.push(i);
+            }
+        }
         clusters
     }
 }
@@ -105,6 +118,8 @@ struct Cluster {
     supports: Vec<usize>,
     springs: Vec<usize>,
     ties: Vec<usize>,
+    /// Bars in space that hand on their torque at a hinge.
+    hinged: Vec<usize>,
 }
 
 impl Cluster {
@@ -135,17 +150,19 @@ impl Cluster {
         let parts = (0..turns.len() as u32).collect();
         let part_of = |part: &Part| at_node[part.nodes[0]].first().copied().unwrap_or(u32::MAX);
         let of_superelement = given.iter().map(part_of).collect();
-        let merged = Parts { at_node, turning, turns, of_superelement };
+        let of_element = structure.elements.iter().map(|element| number[groups.of(element.nodes[0])]).collect();
+        let merged = Parts { at_node, turning, turns, of_element, of_superelement };
         (merged, Cluster { parts, ..self })
     }
 
     /// Motions of the cluster; `None` if the decomposition did not converge.
-    fn null_space(&self, structure: &Structure, dofs: &Dofs, parts: &Parts) -> Option<Vec<Motion>> {
+    fn null_space(&self, structure: &Structure, dofs: &Dofs, parts: &Parts, spins: &[Spin]) -> Option<Vec<Motion>> {
         let unknowns = Unknowns::of(self, structure, dofs, parts);
         let mut rows: Vec<Terms> = [unknowns.pins(self), unknowns.given_resistance(), unknowns.holders(self)].concat();
         if structure.dimension == Dimension::Space {
             rows.extend(unknowns.torsions(self));
-            rows.extend(unknowns.idle_spins(self));
+            let own = spins.iter().filter(|(part, _)| unknowns.of_part.contains_key(part));
+            rows.extend(own.map(|&(part, axis)| unknowns.spin(part, axis).collect::<Terms>()));
         }
         let largest = self.nodes.iter().flat_map(|&n| structure.nodes[n].position).fold(0.0_f64, |m, x| m.max(x.abs()));
         let basis = null_basis(&rows, unknowns.count, NULL * (1.0 + largest / unknowns.size))?;
@@ -249,67 +266,26 @@ impl<'a> Unknowns<'a> {
 
     /// Hinged bars turn with their nodes about their own axes.
     fn torsions(&self, cluster: &Cluster) -> Vec<Terms> {
-        let own: HashSet<u32> = cluster.parts.iter().copied().collect();
         let mut rows = Vec::new();
-        for element in &self.structure.elements {
-            let ElementKind::SpaceFrame { joints, .. } = &element.kind else { continue };
-            let [a, b] = [element.nodes[0], element.nodes[1]];
-            if !own.contains(&self.parts.at_node[a][0]) && !own.contains(&self.parts.at_node[b][0]) {
-                continue;
-            }
-            // The part of the element: the one that both of its nodes have.
-            let both = |part: &&u32| self.parts.at_node[b].contains(part);
-            let Some(&part) = self.parts.at_node[a].iter().find(both) else { continue };
-            let Some(axis) = axis(self.structure, &[a, b]) else { continue };
-            for (node, joint) in [a, b].into_iter().zip(joints) {
-                let Some(with) = self.parts.turning[node].filter(|_| *joint == EndJoint::Hinge) else { continue };
-                if with == part || self.dofs.of(node, Component::Rx).is_none() {
-                    continue;
-                }
-                let about = |part: u32, sign: f64| {
-                    Component::ROTATIONS.into_iter().flat_map(move |component| {
-                        let turned = self.moved(node, part, component);
-                        turned.into_iter().map(move |(unknown, a)| (unknown, sign * axis[component.axis()] * a))
-                    })
-                };
-                rows.push(about(part, 1.0).chain(about(with, -1.0)).collect());
+        for &index in &cluster.hinged {
+            let element = &self.structure.elements[index];
+            let part = self.parts.of_element[index];
+            let [a, b] = [0, 1].map(|end| self.structure.nodes[element.nodes[end]].position);
+            let Some(axis) = unit(way(a, b)) else { continue };
+            for (at, &node) in element.nodes.iter().enumerate() {
+                let handed_on = !element.turns_with(at) && element.components(at).contains(&Component::Rx);
+                let Some(with) = self.parts.turning[node].filter(|with| handed_on && *with != part) else { continue };
+                rows.push(self.spin(part, axis).chain(negative(self.spin(with, axis).collect())).collect());
             }
         }
         rows
     }
 
-    /// A part on one line of which no node turns with it does not turn about that line: nothing would move. So does a body
-    /// that [cannot be felt](idle_spin) turning.
-    fn idle_spins(&self, cluster: &Cluster) -> Vec<Terms> {
-        let mut nodes_of: HashMap<u32, Vec<usize>> = HashMap::new();
-        for &node in &cluster.nodes {
-            for &part in &self.parts.at_node[node] {
-                nodes_of.entry(part).or_default().push(node);
-            }
-        }
-        let spin = |part: u32, axis: [f64; 3]| -> Terms {
-            let turned = Component::ROTATIONS.map(|component| (self.of_part[&part][component as usize], component));
-            turned.into_iter().map(|(unknown, component)| (unknown, axis[component.axis()])).collect()
-        };
-        let mut rows = Vec::new();
-        for &part in cluster.parts.iter().filter(|part| self.parts.turns[**part as usize]) {
-            let Some(nodes) = nodes_of.get(&part) else { continue };
-            let turns =
-                |node: &usize| self.parts.turning[*node] == Some(part) && self.dofs.of(*node, Component::Rx).is_some();
-            if !nodes.iter().any(turns)
-                && let Some(axis) = axis(self.structure, nodes)
-            {
-                rows.push(spin(part, axis));
-            }
-        }
-        for body in 0..self.structure.rigid.len() {
-            let first = self.structure.rigid[body].nodes[0];
-            let part = self.parts.turning[first].filter(|part| self.of_part.contains_key(part));
-            if let (Some(part), Some(axis)) = (part, idle_spin(self.structure, body)) {
-                rows.push(spin(part, axis));
-            }
-        }
-        rows
+    /// By how much a part turns about an axis.
+    fn spin(&self, part: u32, axis: [f64; 3]) -> impl Iterator<Item = (usize, f64)> {
+        let unknowns = self.of_part[&part];
+        let turned = Component::ROTATIONS.map(|component| (unknowns[component as usize], axis[component.axis()]));
+        turned.into_iter().filter(|(unknown, _)| *unknown != usize::MAX)
     }
 
     /// What the parts of a superelement resist.

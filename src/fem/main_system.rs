@@ -22,7 +22,7 @@ use super::kernel::{self, RigidKernel};
 use super::loads::{load_vectors, settlements};
 use super::loose::{Motion, loose_motions};
 use super::order::Places;
-use super::outline::Outline;
+use super::outline::{Outline, refuse_torques};
 use super::refinement::{Refinement, Verdict};
 use super::repeated::Repeated;
 use super::sparse::SymmetricSparse;
@@ -178,6 +178,7 @@ impl MainSystem {
         let clock = Instant::now();
         let mut system = self.clone();
         system.f = load_vectors(structure, &self.dofs)?;
+        refuse_torques(structure, &self.dofs, self.elimination.spins(), &system.f)?;
         system.settled = settlements(structure, &self.dofs, &self.elimination)?;
         if system.doubled.is_some() {
             system.take_loads_doubled(structure, &Quiet)?;

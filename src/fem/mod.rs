@@ -49,6 +49,7 @@ mod error;
 mod expand;
 mod factor;
 mod fill;
+mod idle_spins;
 mod joint_rows;
 mod kernel;
 mod kinematics;

@@ -3,12 +3,17 @@
 use super::dof::Dofs;
 use super::elimination::Elimination;
 use super::error::MainSystemError;
+use super::idle_spins::IdleSpin;
+use super::kernel::mechanism;
 use super::loads::{load_vectors, settlements};
 use super::repeated::Repeated;
 use super::superelement::refuse_indefinite;
 use crate::model::pair::Joint;
-use crate::model::structure::Structure;
+use crate::model::structure::{Component, Structure};
 use crate::watch::Watch;
+
+/// A torque below this share of the moments that it is the sum of is their rounding.
+const NO_TORQUE: f64 = 16.0 * f64::EPSILON;
 
 /// See the module; the parts are those of [`MainSystem`](super::MainSystem).
 pub struct Outline {
@@ -36,7 +41,41 @@ impl Outline {
         let joints: Vec<Joint> = independent.iter().map(|&index| all_joints[index].clone()).collect();
         let elimination = Elimination::new(structure, &dofs, &joints)?;
         let f = load_vectors(structure, &dofs)?;
+        refuse_torques(structure, &dofs, elimination.spins(), &f)?;
         let settled = settlements(structure, &dofs, &elimination)?;
         Ok(Outline { dofs, elimination, joints, independent, repeated, f, settled })
     }
+}
+
+/// Refuses loads that would drive a spin that is held.
+///
+/// # Errors
+/// The mechanism that it is.
+pub fn refuse_torques(
+    structure: &Structure,
+    dofs: &Dofs,
+    spins: &[IdleSpin],
+    f: &[Vec<f64>],
+) -> Result<(), MainSystemError> {
+    let terms = |spin: &IdleSpin| -> Vec<(usize, f64)> {
+        let of = |&node: &usize| {
+            Component::ROTATIONS.into_iter().filter_map(move |c| Some((dofs.of(node, c)?, spin.axis[c.axis()])))
+        };
+        spin.nodes.iter().flat_map(of).collect()
+    };
+    for spin in spins {
+        let terms = terms(spin);
+        for f in f {
+            let (torque, size) = terms
+                .iter()
+                .fold((0.0, 0.0), |(sum, size): (f64, f64), &(dof, a)| (sum + a * f[dof], size + (a * f[dof]).abs()));
+            if torque.abs() > NO_TORQUE * size {
+                let mut u = vec![[0.0; 6]; structure.nodes.len()];
+                let [x, y, z] = spin.axis;
+                spin.nodes.iter().for_each(|&node| u[node] = [0.0, 0.0, 0.0, x, y, z]);
+                return Err(mechanism(structure, &u));
+            }
+        }
+    }
+    Ok(())
 }

@@ -1,12 +1,11 @@
 //! Parts of a structure: elements that can only move as one rigid body.
 //!
-//! They have an edge in common (solids a face), or are frame bars rigidly attached to one node, or have two nodes in one rigid body (solids three that are not on
-//! one line); a lone
-//! node is a part without rotation. A part of a superelement moves as its stiffness lets it. Parts that share a node are
-//! pinned there.
+//! They have an edge in common (solids a face), or are frame bars rigidly attached to one node, or have two nodes in one
+//! rigid body (solids three that are not on one line); a lone node is a part without rotation. A part of a superelement
+//! moves as its stiffness lets it. Parts that share a node are pinned there.
 
 use crate::model::groups::Groups;
-use crate::model::structure::Structure;
+use crate::model::structure::{Component, Structure};
 use crate::model::superelement::Part;
 use crate::model::vector::{cross, length, unit, way};
 
@@ -16,16 +15,19 @@ pub struct Parts {
     pub at_node: Vec<Vec<u32>>,
     /// The part that turns with the rotation of the node.
     pub turning: Vec<Option<u32>>,
-    /// Whether a part can turn (is more than a lone node).
+    /// Whether a part can turn (is more than a lone node without rotations).
     pub turns: Vec<bool>,
+    /// The part of each element.
+    pub of_element: Vec<u32>,
     /// The part of each part of the superelement; `u32::MAX` for one that lies in another cluster.
     pub of_superelement: Vec<u32>,
 }
 
+/// Sines, and cosines of right angles, below this are rounding of coordinates.
+pub const STRAIGHT: f64 = 1e-9;
+
 /// The unit vector along the line on which all these nodes lie; `None` where they do not.
-pub fn axis(structure: &Structure, nodes: &[usize]) -> Option<[f64; 3]> {
-    // Sines below this are rounding of coordinates.
-    const STRAIGHT: f64 = 1e-9;
+fn axis(structure: &Structure, nodes: &[usize]) -> Option<[f64; 3]> {
     let place = |node: usize| structure.nodes[node].position;
     let (&first, others) = nodes.split_first()?;
     let ways = || others.iter().map(|&node| way(place(first), place(node)));
@@ -123,11 +125,31 @@ impl Parts {
         for turning in turning.iter_mut().flatten() {
             *turning = part_of(*turning as usize);
         }
+        let of_element = (0..structure.elements.len()).map(&mut part_of).collect();
         let of_superelement = (0..given.len()).map(|part| part_of(beyond + part)).collect();
         for parts in at_node.iter_mut().filter(|parts| parts.is_empty()) {
             parts.push(turns.len() as u32);
             turns.push(false);
         }
-        Parts { at_node, turning, turns, of_superelement }
+        // A node to which bars hand on nothing but their torque turns by itself.
+        for element in &structure.elements {
+            for (at, &node) in element.nodes.iter().enumerate() {
+                if turning[node].is_none() && element.components(at).contains(&Component::Rx) {
+                    at_node[node].push(turns.len() as u32);
+                    turning[node] = Some(turns.len() as u32);
+                    turns.push(true);
+                }
+            }
+        }
+        Parts { at_node, turning, turns, of_element, of_superelement }
+    }
+
+    /// The line on which all nodes of each part lie, as a unit vector along it; `None` where they do not.
+    pub fn lines(&self, structure: &Structure) -> Vec<Option<[f64; 3]>> {
+        let mut nodes = vec![Vec::new(); self.turns.len()];
+        for (node, parts) in self.at_node.iter().enumerate() {
+            parts.iter().for_each(|&part| nodes[part as usize].push(node));
+        }
+        nodes.iter().map(|nodes| axis(structure, nodes)).collect()
     }
 }

@@ -4,6 +4,9 @@ use serde_json::{Value, json};
 
 use crate::common::*;
 use stickslip::answer::record::{Answer, EndForces, OutcomeKind, State, Verdict};
+use stickslip::model::load::load_text;
+use stickslip::solve::prepare;
+use stickslip::watch::Quiet;
 
 /// A structure in space.
 fn space(mut value: Value) -> Case {
@@ -99,6 +102,80 @@ fn a_hinged_bar_between_columns_is_a_simple_beam() {
     close("middle", beam[1].end.m, 5.0 * l * l / 8.0, 1e-9);
     near("start", beam[0].start.m, 0.0, 1e-9, 10.0);
     close("column", members[0].start.n, -5.0 * l / 2.0, 1e-10);
+}
+
+/// A bar along x between ball joints, its places held as said; local y is the global z.
+fn between_joints(divisions: usize, held: &[&str], load: Value) -> Value {
+    json!({
+        "materials": { "m": { "E": 2.0e8, "nu": 0.25 } },
+        "sections": { "s": { "area": 0.01, "inertia_y": 2e-5, "inertia_z": 1e-4, "torsion": 3e-5 } },
+        "nodes": { "a": [1, 2, 3], "b": [5, 2, 3] },
+        "bars": [{ "id": "ab", "nodes": ["a", "b"], "material": "m", "section": "s", "divisions": divisions,
+                   "hinges": ["start", "end"] }],
+        "supports": [{ "at": "a", "fixed": held }, { "at": "b", "fixed": ["x", "y", "z"] }],
+        "loads": { "F": { "items": [load] } }
+    })
+}
+
+/// Between ball joints a bar may spin about its line, which nothing feels: divided or not it is a simple beam,
+/// v = FL³/48EI in the middle both ways, and M = FL/4; bent there by a couple M it turns by ML/12EI. So it is where the
+/// joints are clamped.
+#[test]
+fn a_divided_bar_between_ball_joints_is_a_simple_beam() {
+    let (e, iy, iz, l) = (2.0e8, 2e-5, 1e-4, 4.0_f64);
+    let all = ["x", "y", "z", "rx", "ry", "rz"];
+    for (divisions, held) in [(2, &all[..3]), (4, &all[..3]), (2, &all[..])] {
+        let middle = format!("ab/{}", divisions / 2);
+        let force = json!({ "point": { "at": middle, "force": [0, 2, 3], "moment": [0, 5, 7] } });
+        let answer = space(between_joints(divisions, held, force)).solve(&[]);
+        is_answer(&answer);
+        let bent = [0.0, 2.0 / iy, 3.0 / iz].map(|force| force * l.powi(3) / (48.0 * e));
+        let turned = [0.0, 5.0 / iz, 7.0 / iy].map(|moment| moment * l / (12.0 * e));
+        near_all("middle", &moved(&answer, &middle), &[bent, turned].concat(), 1e-10);
+    }
+}
+
+/// A torque on it is taken where a joint is clamped, a hinge hands it on: θ = T (L/2)/GJ. Between ball joints nothing takes it.
+#[test]
+fn a_torque_between_ball_joints_has_nothing_to_hold_it() {
+    let torque = || json!({ "point": { "at": "ab/1", "force": [0, 0, 0], "moment": [6, 0, 0] } });
+    let answer = space(between_joints(2, &["x", "y", "z", "rx", "ry", "rz"], torque())).solve(&[]);
+    is_answer(&answer);
+    close("twist", moved(&answer, "ab/1")[3], 6.0 * 2.0 / (2.0e8 / 2.5 * 3e-5), 1e-10);
+    near_all("moment", &answer.reactions.as_ref().expect("reactions")[0].moment(), &[-6.0, 0.0, 0.0], 1e-10);
+    let mut loose = between_joints(2, &["x", "y", "z"], torque());
+    loose["dimension"] = json!(3);
+    let scenario = load_text("test", &scenario_text(loose), None).expect("a scenario");
+    let refused = prepare(&scenario, &Quiet).err().expect("a refusal").to_string();
+    assert!(refused.contains("node ab/1 is free to move by turning (rx)"), "{refused}");
+}
+
+/// A column through a floor between ball joints, its beam hinged to it: nothing feels it spin, while the beam's torque
+/// holds the beam. Both are simple beams, the beam pushes its reaction into the column.
+#[test]
+fn a_column_between_ball_joints_carries_a_hinged_beam() {
+    let case = space(json!({
+        "materials": { "m": { "E": 2.0e8, "nu": 0.25 } },
+        "sections": { "s": { "area": 0.01, "inertia_y": 2e-5, "inertia_z": 1e-4, "torsion": 3e-5 } },
+        "nodes": { "foot": [0, 0, 0], "m": [0, 0, 2], "head": [0, 0, 5], "c": [4, 0, 2] },
+        "bars": [
+            { "id": "column", "polyline": ["foot", "m", "head"], "material": "m", "section": "s", "hinges": ["start", "end"] },
+            { "id": "beam", "nodes": ["m", "c"], "material": "m", "section": "s", "hinges": ["start", "end"], "divisions": 2 }
+        ],
+        "supports": [{ "at": "foot", "fixed": ["x", "y", "z"] }, { "at": "head", "fixed": ["x", "y"] },
+                     { "at": "c", "fixed": ["y", "z"] }],
+        "loads": { "F": { "items": [{ "line": { "bar": "beam", "value": [0, 3, -5] } },
+                                    { "point": { "at": "m", "force": [30, 0, 0] } }] } }
+    }));
+    let answer = case.solve(&[]);
+    is_answer(&answer);
+    let reaction = |node: &str| {
+        let all = answer.reactions.as_ref().expect("reactions");
+        all.iter().find(|found| found.node == node).expect("a reaction").force()
+    };
+    near_all("foot", &reaction("foot"), &[-30.0 * 3.0 / 5.0, -6.0 * 3.0 / 5.0, 10.0], 1e-10);
+    near_all("head", &reaction("head"), &[-30.0 * 2.0 / 5.0, -6.0 * 2.0 / 5.0, 0.0], 1e-10);
+    near_all("c", &reaction("c"), &[0.0, -6.0, 10.0], 1e-10);
 }
 
 /// A beam on frictional supports in the plane, and the same in space: upright z in the place of y. Its numbers are those

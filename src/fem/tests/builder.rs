@@ -1,6 +1,8 @@
 //! Small structures in a few lines.
 
-use crate::fem::{MainSystem, MainSystemError};
+use nalgebra::DVector;
+
+use crate::fem::{Displacements, MainSystem, MainSystemError};
 use crate::model::pair::{Joint, Law, Pair, joints};
 use crate::model::parameter::Number;
 use crate::model::structure::{
@@ -199,4 +201,21 @@ pub fn two_plates(size: [f64; 2], divisions: [usize; 2], first: usize) -> Model 
     let left = upper.iter().map(|row| row[0]).collect();
     model.case(edge(left, size[1], [1.0, 0.0]));
     model
+}
+
+#[track_caller]
+pub fn near(found: f64, expected: f64) {
+    assert!((found - expected).abs() <= 1e-10 * expected.abs().max(1e-2), "{found} instead of {expected}");
+}
+
+/// The answer with every joint on: z = 0, λ = RF.
+pub fn main_answer(model: &Model) -> (MainSystem, Displacements, DVector<f64>, Vec<f64>) {
+    let system = model.solve();
+    let factors = vec![1.0; model.0.load_cases.len()];
+    let mut lambda = DVector::zeros(system.stiffness().nrows());
+    system.loads().iter().for_each(|rf| lambda += rf);
+    let u = system.displacements(&factors, &DVector::zeros(lambda.len()));
+    let residual = system.equilibrium_residual(&model.0, &u, &lambda, &factors);
+    assert!(residual < 1e-12, "equilibrium {residual:e}");
+    (system, u, lambda, factors)
 }

@@ -2,30 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::builder::{Model, coulomb, frictionless, point, two_plates};
-use crate::fem::{Displacements, MainSystem};
+use super::builder::{Model, coulomb, frictionless, main_answer, near, point, two_plates};
 use crate::model::structure::{ElementLoad, Load, Plane};
-
-#[track_caller]
-fn near(found: f64, expected: f64) {
-    assert!((found - expected).abs() <= 1e-10 * expected.abs().max(1e-2), "{found} instead of {expected}");
-}
 
 #[track_caller]
 fn near_forces(found: [f64; 6], expected: [f64; 3]) {
     std::iter::zip(found, expected).for_each(|(found, expected)| near(found, expected));
-}
-
-/// The answer with every joint on: z = 0, λ = RF.
-fn main_answer(model: &Model) -> (MainSystem, Displacements, DVector<f64>, Vec<f64>) {
-    let system = model.solve();
-    let factors = vec![1.0; model.0.load_cases.len()];
-    let mut lambda = DVector::zeros(system.stiffness().nrows());
-    system.loads().iter().for_each(|rf| lambda += rf);
-    let u = system.displacements(&factors, &DVector::zeros(lambda.len()));
-    let residual = system.equilibrium_residual(&model.0, &u, &lambda, &factors);
-    assert!(residual < 1e-12, "equilibrium {residual:e}");
-    (system, u, lambda, factors)
 }
 
 /// Cantilever, L = 4 in two elements, EI = 3, EA = 7, at 30° to x: P across its axis at the tip.
