@@ -146,7 +146,8 @@ fn a_torque_between_ball_joints_has_nothing_to_hold_it() {
     let mut loose = between_joints(2, &["x", "y", "z"], torque());
     loose["dimension"] = json!(3);
     let scenario = load_text("test", &scenario_text(loose), None).expect("a scenario");
-    let refused = prepare(&scenario, &Quiet).err().expect("a refusal").to_string();
+    let Err(refused) = prepare(&scenario, &Quiet) else { panic!("a torque that drives the spin is to be refused") };
+    let refused = refused.to_string();
     assert!(refused.contains("node ab/1 is free to move by turning (rx)"), "{refused}");
 }
 
