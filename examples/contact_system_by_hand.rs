@@ -42,6 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         kernel: DMatrix::zeros(2, 0),
         corrected: None,
         force_form: None,
+        yielding: None,
         file: None,
     };
     let problem = ContactProblem::new(&Arc::new(system), vec![PairLaw::rubbing(friction, 0.0, 0.0)], &[1.0]);

@@ -70,7 +70,13 @@ impl JointState {
     }
 
     /// The state of an answer on Coulomb's cone.
-    pub fn on_cone(problem: &ContactProblem, ConeAnswer { z, forces, .. }: ConeAnswer) -> JointState {
+    pub fn on_cone(problem: &ContactProblem, found: ConeAnswer) -> JointState {
+        let yielding = problem.system.yielding.as_ref();
+        let free = yielding.map_or_else(Vec::new, |yielding| yielding.undetermined(problem, &found));
+        let ConeAnswer { mut z, mut forces, .. } = found;
+        if let Some(yielding) = yielding {
+            yielding.put_exactly(problem, &mut z, &mut forces);
+        }
         let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(forces.len(), forces.iter().map(pick));
         JointState {
             left: state_forces(problem, &z).left,
@@ -79,7 +85,7 @@ impl JointState {
             z_terms: DVector::zeros(z.len()),
             z,
             p: 0.0,
-            free: Vec::new(),
+            free,
             on_cone: true,
         }
     }

@@ -39,6 +39,7 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
         rounded: false,
         corrected: None,
         force_form: None,
+        yielding: None,
         file: None,
         loads: Vec::new(),
         stiffness,

@@ -164,6 +164,7 @@ fn from_stiffness(
         kernel,
         corrected,
         force_form: None,
+        yielding: None,
         file,
     };
     Ok((system, remarks))
@@ -289,6 +290,7 @@ fn from_compliance(
         kernel: DMatrix::zeros(k, 0),
         corrected: None,
         force_form: None,
+        yielding: None,
         file: Some(Arc::new(file)),
     };
     Ok((system, Vec::new()))
@@ -332,6 +334,7 @@ fn singular_compliance(
         kernel: DMatrix::zeros(k, 0),
         corrected: None,
         force_form: Some(ForceForm { joints: forced, self_stress }),
+        yielding: None,
         file: Some(Arc::new(rows.data(matrix, true, given, factor))),
     })
 }

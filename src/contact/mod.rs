@@ -38,3 +38,4 @@ pub mod sums;
 pub mod system;
 pub mod unique;
 pub mod written;
+pub mod yielding;

@@ -8,6 +8,10 @@ use super::sum::Sum;
 use super::sums::joint_forces;
 use crate::watch::Watch;
 
+/// Answers at most until the multipliers of joints that repeat one another must have settled: each gains some five digits,
+/// and only parts that do not fit press on for ever.
+const MULTIPLIERS: usize = 12;
+
 /// The parts of a [`ConeProblem`] that are made for it.
 #[derive(Clone, Debug)]
 pub struct OnCone<'a> {
@@ -48,7 +52,23 @@ impl<'a> OnCone<'a> {
     /// # Errors
     /// [`ConeFailure`].
     pub fn answer(&self, start: &DVector<f64>, watch: &dyn Watch) -> Result<ConeAnswer, ConeFailure> {
-        answer_on_cone(&self.problem(), start, watch)
+        let Some(yielding) = &self.problem.system.yielding else {
+            return answer_on_cone(&self.problem(), start, watch);
+        };
+        let stiffness = &self.problem.system.stiffness;
+        let (mut now, mut from, mut steps) = (self.clone(), start.clone(), 0);
+        let mut before: Option<Vec<Sum>> = None;
+        for _ in 0..MULTIPLIERS {
+            let found = answer_on_cone(&now.problem(), &from, watch)?;
+            steps += found.steps;
+            if before.is_some_and(|before| yielding.is_settled(&before, &found.forces)) {
+                return Ok(ConeAnswer { steps, ..found });
+            }
+            let [held, terms] = yielding.held_by(stiffness, &found.forces);
+            (now.load, now.load_terms) = (&self.load + held, &self.load_terms + terms);
+            (from, before) = (found.z, Some(found.forces));
+        }
+        Err(ConeFailure::DoNotFit)
     }
 
     /// The fresh check of displacements z and their forces.

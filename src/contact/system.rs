@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::file_data::FileData;
+use super::yielding::Yielding;
 
 use crate::lcp::problem::NOISE;
 use crate::model::pair::Law;
@@ -97,6 +98,8 @@ pub struct ContactSystem {
     pub corrected: Option<DMatrix<f64>>,
     /// The joints whose force is the unknown, where joints repeat one another; `None` where all are independent.
     pub force_form: Option<ForceForm>,
+    /// What joints that repeat one another in space were made to yield of, so that R holds for all of them.
+    pub yielding: Option<Box<Yielding>>,
     /// The data of a file that R and RF were made from; `None` where they are the data, and for a structure.
     pub file: Option<Arc<FileData>>,
 }
@@ -142,7 +145,8 @@ impl ContactSystem {
 
     /// Why `command`, which works on R alone, cannot be used; `None` where all joints are independent.
     pub fn dependence_refusal(&self, command: &str) -> Option<String> {
-        let form = self.force_form.as_ref()?;
+        let exact = self.yielding.as_ref().map_or(self, |yielding| &yielding.exact);
+        let form = exact.force_form.as_ref()?;
         let felt = |joint: usize| form.self_stress.row(joint).amax() > 0.0;
         let of_pair = |(i, pair): &(usize, &ContactPair)| felt(*i) || pair.tangential.clone().any(felt);
         let ids: Vec<&str> = self.pairs.iter().enumerate().filter(of_pair).map(|(_, pair)| pair.id.as_str()).collect();

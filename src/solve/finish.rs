@@ -186,7 +186,10 @@ impl Prepared {
 
 /// What is said of pairs whose joints repeat one another, so that the motion leaves their forces undetermined.
 fn notes_on_shared_forces(problem: &ContactProblem, state: &JointState) -> Vec<String> {
-    let otherwise = may_hold_otherwise(problem, &state.z);
+    let otherwise = match problem.system.yielding {
+        Some(_) if state.free.iter().any(|&pair| problem.laws[pair].friction() > 0.0) => state.free.clone(),
+        _ => may_hold_otherwise(problem, &state.z),
+    };
     let shared: Vec<usize> = state.free.iter().copied().filter(|pair| !otherwise.contains(pair)).collect();
     let kinds = [
         (

@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::contact::force_form::{Dependence, Repeats, with_repeated};
 use crate::contact::given::{GivenError, given_system, with_loads};
 use crate::contact::system::{ContactPair, ContactSystem, JointLoad};
+use crate::contact::yielding::yielding;
 use crate::explain::ray::Built;
 use crate::fem::{MainSystem, MainSystemError};
 use crate::lcp::mirrored::MirroredLcp;
@@ -235,22 +236,6 @@ fn dependence(main: &MainSystem) -> Dependence<'_> {
     Dependence { independent: main.independent(), repeated, offsets: main.repeated_offsets() }
 }
 
-/// Joints that repeat one another are solved in the plane only: in space all of them are refused with their places.
-fn repeated_in_space(scenario: &Scenario, system: &ContactSystem, main: &MainSystem) -> PrepareError {
-    let problem = |joint: usize| {
-        let holds = |(i, pair): &(usize, &ContactPair)| *i == joint || pair.tangential.contains(&joint);
-        let pair = system.pairs.iter().enumerate().find(holds).map_or(0, |(i, _)| i);
-        let place = scenario.places.pairs.get(pair).map_or("contacts".to_owned(), ToString::to_string);
-        let message = format!(
-            "a joint of {} repeats those of other pairs, which is solved in the plane only so far: use `skip` or a \
-             `frictionless` pair, or split the node",
-            system.pairs[pair].id
-        );
-        (place, message)
-    };
-    problems_at(scenario, main.repeated().iter().map(|one| problem(one.joint)))
-}
-
 fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
     let joints = joints(&structure.pairs);
     let main =
@@ -285,14 +270,15 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
         kernel: main.kernel().clone(),
         corrected: None,
         force_form: None,
+        yielding: None,
         file: None,
     };
     system.zero_free_joints();
     if !main.repeated().is_empty() {
-        if system.is_in_space() {
-            return Err(repeated_in_space(scenario, &system, &main));
-        }
         system = with_repeated(system, &dependence(&main));
+        if system.is_in_space() {
+            system = yielding(system);
+        }
     }
     let seconds = main.timings();
     Ok(Prepared {
@@ -346,7 +332,11 @@ impl Prepared {
                 let main =
                     main.with_loads(structure).map_err(|error| main_system_problem(scenario, structure, error))?;
                 let loads = dependence(&main).loads(joint_loads(structure, &main));
-                let system = Arc::new(ContactSystem { loads, ..ContactSystem::clone(system) });
+                let system = match &system.yielding {
+                    Some(made) => yielding(ContactSystem { loads, ..made.exact.clone() }),
+                    None => ContactSystem { loads, ..ContactSystem::clone(system) },
+                };
+                let system = Arc::new(system);
                 Geometry::Structure { system, main: Box::new(main), structure: structure.clone() }
             }
             (Geometry::Contact { system, remarks }, Source::ContactSystem(given)) => {

@@ -31,6 +31,7 @@ pub fn coulomb(stiffness: DMatrix<f64>, load: DVector<f64>, friction: f64) -> Co
         rounded: false,
         corrected: None,
         force_form: None,
+        yielding: None,
         file: None,
         kernel: DMatrix::zeros(2 * m, 0),
     };

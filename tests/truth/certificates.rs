@@ -72,6 +72,7 @@ fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> ContactProblem {
         kernel,
         corrected: None,
         force_form: None,
+        yielding: None,
         file: None,
     };
     ContactProblem::new(&Arc::new(system), laws, &[1.0])

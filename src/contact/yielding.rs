@@ -1,0 +1,243 @@
+//! Contact problems in space whose joints repeat one another: solved with joints that yield a little, which is then taken
+//! back.
+//!
+//! No R says λ for every z of joints that repeat one another, and friction in space is no couple of joints that could change
+//! sides as in [`super::force_form`]. Joints T that self-stress reaches are given a small compliance ε instead:
+//!
+//! ```text
+//!     y = B p + y₀ + ε λ,     p: z of the independent joints of T,   B = [I; A],   y₀ = (0, h)
+//!     λ_T = [N Nᵀ/ε + B G⁻¹ R_PP H Bᵀ] (y − y₀) + B H (R_PN z_N + RF_P),     G = BᵀB,   H = (G + ε R_PP)⁻¹,   BᵀN = 0
+//! ```
+//! so that R of the yielding system is symmetric, regular where the structure stands, and differs from that of the structure
+//! by rounding only in motions that its joints can make. Its answer is taken to that of the structure by multipliers
+//! (Hestenes, "Multiplier and gradient methods", 1969): y = B p + y₀ + ε (λ − λ′) with λ′ of the answer before, until λ is
+//! λ′. Where self-stress leaves forces undetermined the first answer is, up to ε, that of least norm, and it stays.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::cone::{ConeAnswer, ConeState};
+use super::pivoted::orthonormal;
+use super::problem::ContactProblem;
+use super::sum::Sum;
+use super::sums::joint_forces;
+use super::system::{ContactSystem, JointLoad};
+use super::written::power_of_two;
+
+/// ε times the largest R_ii: forces lose some 1e5 of the digits of R, and each multiplier gains as much.
+const COMPLIANCE: f64 = 1.0 / 131_072.0;
+/// A self-stress below this share of the largest belongs to no joint.
+const FELT: f64 = 1e-9;
+
+/// What a yielding system was made from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Yielding {
+    /// The system as it is, its repeated joints in force form.
+    pub exact: ContactSystem,
+    /// T: the joints that yield, those that are repeated and those that repeat them.
+    pub joints: Vec<usize>,
+    /// ε, a displacement per force.
+    pub compliance: f64,
+}
+
+/// The yielding system of one whose repeated joints stand in force form.
+pub fn yielding(exact: ContactSystem) -> ContactSystem {
+    let blocks = Blocks::of(&exact);
+    let stiffness = blocks.stiffness();
+    let loads = exact.loads.iter().map(|load| blocks.load(load, &stiffness)).collect();
+    let yielding = Yielding { joints: blocks.yielding.clone(), compliance: blocks.compliance, exact };
+    let exact = &yielding.exact;
+    ContactSystem {
+        pairs: exact.pairs.clone(),
+        tangents: exact.tangents,
+        stiffness,
+        loads,
+        rounded: true,
+        kernel: exact.kernel.clone(),
+        corrected: None,
+        force_form: None,
+        yielding: Some(Box::new(yielding)),
+        file: None,
+    }
+}
+
+/// The mixed matrix of a system, taken apart.
+struct Blocks<'a> {
+    mixed: &'a DMatrix<f64>,
+    /// N: independent joints that nothing repeats.
+    others: Vec<usize>,
+    /// P, then D.
+    yielding: Vec<usize>,
+    /// P: the first of them.
+    independent: usize,
+    compliance: f64,
+    /// Orthonormal N: the self-stress of T.
+    self_stress: DMatrix<f64>,
+    /// H Bᵀ, and B G⁻¹ R_PP H Bᵀ.
+    reduced: DMatrix<f64>,
+    stretched: DMatrix<f64>,
+}
+
+impl<'a> Blocks<'a> {
+    fn of(exact: &'a ContactSystem) -> Blocks<'a> {
+        let mixed = &exact.stiffness;
+        let k = mixed.nrows();
+        let repeated: Vec<usize> = (0..k).filter(|&joint| exact.is_forced(joint)).collect();
+        let (partners, others): (Vec<usize>, Vec<usize>) = (0..k)
+            .filter(|&joint| !exact.is_forced(joint))
+            .partition(|&joint| repeated.iter().any(|&one| mixed[(one, joint)] != 0.0));
+        let stiffest = others.iter().chain(&partners).map(|&joint| mixed[(joint, joint)]).fold(0.0, f64::max);
+        let compliance = if stiffest > 0.0 { power_of_two(COMPLIANCE / stiffest) } else { 1.0 };
+        let independent = partners.len();
+        let yielding: Vec<usize> = partners.iter().chain(&repeated).copied().collect();
+        let compatible = DMatrix::from_fn(yielding.len(), independent, |i, j| match i.checked_sub(independent) {
+            None => f64::from(i == j),
+            Some(one) => mixed[(repeated[one], partners[j])],
+        });
+        let own = DMatrix::from_fn(independent, independent, |i, j| mixed[(partners[i], partners[j])]);
+        let gram = compatible.tr_mul(&compatible);
+        // G ≥ I, so both are well conditioned.
+        let solve = |matrix: DMatrix<f64>, right: &DMatrix<f64>| match Cholesky::new(matrix) {
+            Some(factor) => factor.solve(right),
+            None => DMatrix::from_element(right.nrows(), right.ncols(), f64::NAN),
+        };
+        let reduced = solve(&gram + compliance * &own, &compatible.transpose());
+        let stretched = &compatible * solve(gram, &(own * &reduced));
+        let stress = exact.force_form.as_ref().map(|form| &form.self_stress);
+        let columns: Vec<DVector<f64>> = (stress.into_iter().flat_map(DMatrix::column_iter))
+            .map(|column| DVector::from_iterator(yielding.len(), yielding.iter().map(|&joint| column[joint])))
+            .collect();
+        let self_stress = orthonormal(&columns, yielding.len());
+        Blocks { mixed, others, yielding, independent, compliance, self_stress, reduced, stretched }
+    }
+
+    /// R_NP: what the other joints feel of the partners.
+    fn coupling(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(self.others.len(), self.independent, |i, j| self.mixed[(self.others[i], self.yielding[j])])
+    }
+
+    fn stiffness(&self) -> DMatrix<f64> {
+        let (coupling, k) = (self.coupling(), self.mixed.nrows());
+        // R_NP H R_PN: H is the part of H Bᵀ under the identity of B.
+        let inner = self.reduced.columns(0, self.independent).into_owned();
+        let relieved = &coupling * inner * coupling.transpose();
+        let across = &coupling * &self.reduced;
+        let own = &self.self_stress * self.self_stress.transpose() / self.compliance + &self.stretched;
+        let mut stiffness = DMatrix::zeros(k, k);
+        for (a, &i) in self.others.iter().enumerate() {
+            for (b, &j) in self.others.iter().enumerate() {
+                let relief = 0.5 * (relieved[(a, b)] + relieved[(b, a)]);
+                stiffness[(i, j)] = self.mixed[(i, j)] - self.compliance * relief;
+            }
+            for (b, &j) in self.yielding.iter().enumerate() {
+                (stiffness[(i, j)], stiffness[(j, i)]) = (across[(a, b)], across[(a, b)]);
+            }
+        }
+        for (a, &i) in self.yielding.iter().enumerate() {
+            for (b, &j) in self.yielding.iter().enumerate() {
+                stiffness[(i, j)] = 0.5 * (own[(a, b)] + own[(b, a)]);
+            }
+        }
+        stiffness
+    }
+
+    /// RF of the yielding system: RF of the independent joints through the springs, less what R makes of y₀.
+    fn load(&self, load: &JointLoad, stiffness: &DMatrix<f64>) -> JointLoad {
+        let coupling = self.coupling();
+        let passed_on = self.reduced.transpose();
+        let relief = self.compliance * &coupling * self.reduced.columns(0, self.independent);
+        let partners = |of: &DVector<f64>| DVector::from_fn(self.independent, |i, _| of[self.yielding[i]]);
+        let combined = |of: &DVector<f64>, [passed_on, relief, stiffness]: [&DMatrix<f64>; 3], sign: f64| {
+            let (own, mut all) = (partners(of), of.clone());
+            let (through, relief) = (passed_on * &own, relief * &own);
+            self.others.iter().zip(relief.iter()).for_each(|(&joint, relief)| all[joint] += sign * relief);
+            self.yielding.iter().zip(through.iter()).for_each(|(&joint, through)| all[joint] = *through);
+            for &one in &self.yielding[self.independent..] {
+                all.axpy(sign * of[one], &stiffness.column(one), 1.0);
+            }
+            all
+        };
+        JointLoad {
+            name: load.name.clone(),
+            vector: combined(&load.vector, [&passed_on, &relief, stiffness], -1.0),
+            terms: combined(&load.terms, [&passed_on.abs(), &relief.abs(), &stiffness.abs()], 1.0),
+        }
+    }
+}
+
+impl Yielding {
+    /// What multipliers λ′ add to the load of the system of this R, and the magnitude of their terms.
+    pub fn held_by(&self, stiffness: &DMatrix<f64>, forces: &[Sum]) -> [DVector<f64>; 2] {
+        let mut held = [DVector::zeros(stiffness.nrows()), DVector::zeros(stiffness.nrows())];
+        for &joint in &self.joints {
+            let moved = self.compliance * forces[joint].value;
+            held[0].axpy(moved, &stiffness.column(joint), 1.0);
+            held[1].axpy(moved.abs(), &stiffness.column(joint).abs(), 1.0);
+        }
+        held
+    }
+
+    /// Whether λ is λ′ to what rounding leaves of it.
+    pub fn is_settled(&self, before: &[Sum], forces: &[Sum]) -> bool {
+        self.joints.iter().all(|&joint| forces[joint].plus(-1.0, before[joint]).is_zero())
+    }
+
+    /// Puts what the joints really do in the place of what the yielding ones do: z of the repeated joints follows from that of
+    /// the others, and λ of those from R. What is held at 0 stays there. Nothing under a load that is none of the cases.
+    pub fn put_exactly(&self, problem: &ContactProblem, z: &mut DVector<f64>, forces: &mut [Sum]) {
+        let exact = ContactProblem::new(&self.exact.clone().into(), problem.laws.clone(), &problem.factors);
+        if problem.factors.is_empty()
+            || ContactProblem::new(&problem.system, Vec::new(), &problem.factors).load != problem.load
+        {
+            return;
+        }
+        let mut unknowns = z.clone();
+        for (joint, unknown) in unknowns.iter_mut().enumerate().filter(|(joint, _)| self.exact.is_forced(*joint)) {
+            *unknown = forces[joint].value;
+        }
+        for (joint, response) in joint_forces(&exact, &unknowns).into_iter().enumerate() {
+            if !self.exact.is_forced(joint) {
+                forces[joint].value = response.value;
+            } else if z[joint] != 0.0 {
+                z[joint] = response.cleaned();
+            }
+        }
+    }
+
+    /// Pairs whose forces the motion leaves undetermined: those that a self-stress reaches which obeys what the open and the
+    /// slipping pairs demand.
+    pub fn undetermined(&self, problem: &ContactProblem, found: &ConeAnswer) -> Vec<usize> {
+        let Some(form) = &self.exact.force_form else { return Vec::new() };
+        let (stress, system) = (&form.self_stress, &self.exact);
+        let mut demands: Vec<DVector<f64>> = Vec::new();
+        let mut demand = |terms: &[(usize, f64)]| {
+            let row = terms.iter().fold(DVector::zeros(stress.ncols()), |sum: DVector<f64>, &(joint, factor)| {
+                sum + factor * stress.row(joint).transpose()
+            });
+            if row.amax() > 0.0 {
+                demands.push(row);
+            }
+        };
+        for (i, (pair, state)) in system.pairs.iter().zip(&found.states).enumerate() {
+            let slip: Vec<f64> = pair.tangential.clone().map(|joint| found.z[joint]).collect();
+            let size = slip.iter().map(|slip| slip * slip).sum::<f64>().sqrt();
+            match state {
+                ConeState::Open => {
+                    demand(&[(i, 1.0)]);
+                    pair.tangential.clone().for_each(|joint| demand(&[(joint, 1.0)]));
+                }
+                ConeState::Slip => (pair.tangential.clone().zip(slip))
+                    .for_each(|(joint, slip)| demand(&[(joint, 1.0), (i, problem.laws[i].friction() * slip / size)])),
+                ConeState::Stick | ConeState::Closed => {}
+            }
+        }
+        // What is left: the complement of the demands.
+        let basis = orthonormal(&demands, stress.ncols());
+        let unit = |i: usize| DVector::from_fn(stress.ncols(), |j, _| f64::from(i == j));
+        let left: Vec<DVector<f64>> = (0..stress.ncols()).map(|i| unit(i) - &basis * basis.tr_mul(&unit(i))).collect();
+        let left: Vec<DVector<f64>> = left.into_iter().filter(|one| one.norm() > FELT).collect();
+        let free = stress * orthonormal(&left, stress.ncols());
+        let largest = free.amax();
+        let felt = |joint: usize| free.ncols() > 0 && free.row(joint).amax() > FELT * largest;
+        (0..system.pairs.len()).filter(|&i| felt(i) || system.pairs[i].tangential.clone().any(felt)).collect()
+    }
+}
