@@ -72,10 +72,11 @@ impl JointState {
     /// The state of an answer on Coulomb's cone.
     pub fn on_cone(problem: &ContactProblem, found: ConeAnswer) -> JointState {
         let yielding = problem.system.yielding.as_ref();
-        let free = yielding.map_or_else(Vec::new, |yielding| yielding.undetermined(problem, &found));
         let ConeAnswer { mut z, mut forces, .. } = found;
+        let mut free = Vec::new();
         if let Some(yielding) = yielding {
             yielding.put_exactly(problem, &mut z, &mut forces);
+            free = yielding.undetermined(problem, &z, false);
         }
         let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(forces.len(), forces.iter().map(pick));
         JointState {

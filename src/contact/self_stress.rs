@@ -51,6 +51,11 @@ pub fn least_norm(problem: &ContactProblem, z: &DVector<f64>, forces: &mut [Sum]
 /// self-stress than the one found may hold another motion. Without friction the motion does not depend on the self-stress.
 pub fn may_hold_otherwise(problem: &ContactProblem, z: &DVector<f64>) -> Vec<usize> {
     let system = &*problem.system;
+    if let Some(yielding) = &system.yielding {
+        let pairs = yielding.undetermined(problem, z, true);
+        let rubs = pairs.iter().any(|&pair| problem.laws[pair].friction() > 0.0);
+        return if rubs { pairs } else { Vec::new() };
+    }
     let Some(form) = &system.force_form else {
         return Vec::new();
     };

@@ -133,6 +133,11 @@ impl ContactSystem {
         NOISE * (self.stiffness[(i, i)] * self.stiffness[(j, j)]).max(0.0).sqrt()
     }
 
+    /// Whether joints repeat one another: an answer need not exist then where the structure stands.
+    pub fn repeats_joints(&self) -> bool {
+        self.force_form.is_some() || self.yielding.is_some()
+    }
+
     /// Whether the force of a joint is the unknown.
     pub fn is_forced(&self, joint: usize) -> bool {
         self.force_form.as_ref().is_some_and(|form| form.joints[joint])

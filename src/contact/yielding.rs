@@ -13,9 +13,10 @@
 //! (Hestenes, "Multiplier and gradient methods", 1969): y = B p + y₀ + ε (λ − λ′) with λ′ of the answer before, until λ is
 //! λ′. Where self-stress leaves forces undetermined the first answer is, up to ε, that of least norm, and it stays.
 
+use std::sync::Arc;
+
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::cone::{ConeAnswer, ConeState};
 use super::pivoted::orthonormal;
 use super::problem::ContactProblem;
 use super::sum::Sum;
@@ -32,7 +33,7 @@ const FELT: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Yielding {
     /// The system as it is, its repeated joints in force form.
-    pub exact: ContactSystem,
+    pub exact: Arc<ContactSystem>,
     /// T: the joints that yield, those that are repeated and those that repeat them.
     pub joints: Vec<usize>,
     /// ε, a displacement per force.
@@ -43,8 +44,9 @@ pub struct Yielding {
 pub fn yielding(exact: ContactSystem) -> ContactSystem {
     let blocks = Blocks::of(&exact);
     let stiffness = blocks.stiffness();
-    let loads = exact.loads.iter().map(|load| blocks.load(load, &stiffness)).collect();
-    let yielding = Yielding { joints: blocks.yielding.clone(), compliance: blocks.compliance, exact };
+    let loads: Vec<JointLoad> = exact.loads.iter().map(|load| blocks.load(load, &stiffness)).collect();
+    let (joints, compliance) = (blocks.yielding.clone(), blocks.compliance);
+    let yielding = Yielding { joints, compliance, exact: Arc::new(exact) };
     let exact = &yielding.exact;
     ContactSystem {
         pairs: exact.pairs.clone(),
@@ -181,14 +183,23 @@ impl Yielding {
         self.joints.iter().all(|&joint| forces[joint].plus(-1.0, before[joint]).is_zero())
     }
 
+    /// The same problem with joints in force form, where its load is that of the cases.
+    pub fn exactly(&self, problem: &ContactProblem) -> Option<ContactProblem> {
+        let of_cases = ContactProblem::new(&problem.system, Vec::new(), &problem.factors);
+        (!problem.factors.is_empty() && of_cases.load == problem.load)
+            .then(|| ContactProblem::new(&self.exact, problem.laws.clone(), &problem.factors))
+    }
+
     /// Puts what the joints really do in the place of what the yielding ones do: z of the repeated joints follows from that of
     /// the others, and λ of those from R. What is held at 0 stays there. Nothing under a load that is none of the cases.
     pub fn put_exactly(&self, problem: &ContactProblem, z: &mut DVector<f64>, forces: &mut [Sum]) {
-        let exact = ContactProblem::new(&self.exact.clone().into(), problem.laws.clone(), &problem.factors);
-        if problem.factors.is_empty()
-            || ContactProblem::new(&problem.system, Vec::new(), &problem.factors).load != problem.load
-        {
-            return;
+        let Some(exact) = self.exactly(problem) else { return };
+        // λ of joints that yield is known to the rounding of its terms, and so is their z.
+        for &joint in &self.joints {
+            if z[joint].abs() <= self.compliance * forces[joint].error() {
+                z[joint] = 0.0;
+            }
+            forces[joint].value = forces[joint].cleaned();
         }
         let mut unknowns = z.clone();
         for (joint, unknown) in unknowns.iter_mut().enumerate().filter(|(joint, _)| self.exact.is_forced(*joint)) {
@@ -203,9 +214,9 @@ impl Yielding {
         }
     }
 
-    /// Pairs whose forces the motion leaves undetermined: those that a self-stress reaches which obeys what the open and the
-    /// slipping pairs demand.
-    pub fn undetermined(&self, problem: &ContactProblem, found: &ConeAnswer) -> Vec<usize> {
+    /// Pairs whose forces a motion z leaves undetermined: those that a self-stress reaches which obeys what the open and the
+    /// slipping pairs demand. With `sticking` none slips: where another self-stress may hold another motion.
+    pub fn undetermined(&self, problem: &ContactProblem, z: &DVector<f64>, sticking: bool) -> Vec<usize> {
         let Some(form) = &self.exact.force_form else { return Vec::new() };
         let (stress, system) = (&form.self_stress, &self.exact);
         let mut demands: Vec<DVector<f64>> = Vec::new();
@@ -213,31 +224,25 @@ impl Yielding {
             let row = terms.iter().fold(DVector::zeros(stress.ncols()), |sum: DVector<f64>, &(joint, factor)| {
                 sum + factor * stress.row(joint).transpose()
             });
-            if row.amax() > 0.0 {
-                demands.push(row);
-            }
+            demands.push(row);
         };
-        for (i, (pair, state)) in system.pairs.iter().zip(&found.states).enumerate() {
-            let slip: Vec<f64> = pair.tangential.clone().map(|joint| found.z[joint]).collect();
-            let size = slip.iter().map(|slip| slip * slip).sum::<f64>().sqrt();
-            match state {
-                ConeState::Open => {
-                    demand(&[(i, 1.0)]);
-                    pair.tangential.clone().for_each(|joint| demand(&[(joint, 1.0)]));
-                }
-                ConeState::Slip => (pair.tangential.clone().zip(slip))
-                    .for_each(|(joint, slip)| demand(&[(joint, 1.0), (i, problem.laws[i].friction() * slip / size)])),
-                ConeState::Stick | ConeState::Closed => {}
+        for (i, pair) in system.pairs.iter().enumerate() {
+            let slip = DVector::from_iterator(pair.tangential.len(), pair.tangential.clone().map(|joint| z[joint]));
+            if z[i] > 0.0 {
+                demand(&[(i, 1.0)]);
+                pair.tangential.clone().for_each(|joint| demand(&[(joint, 1.0)]));
+            } else if !sticking && slip.norm() > 0.0 {
+                let pressed = slip.normalize() * problem.laws[i].friction();
+                (pair.tangential.clone().zip(pressed.iter())).for_each(|(joint, f)| demand(&[(joint, 1.0), (i, *f)]));
             }
         }
-        // What is left: the complement of the demands.
-        let basis = orthonormal(&demands, stress.ncols());
-        let unit = |i: usize| DVector::from_fn(stress.ncols(), |j, _| f64::from(i == j));
-        let left: Vec<DVector<f64>> = (0..stress.ncols()).map(|i| unit(i) - &basis * basis.tr_mul(&unit(i))).collect();
-        let left: Vec<DVector<f64>> = left.into_iter().filter(|one| one.norm() > FELT).collect();
+        let demands = orthonormal(&demands, stress.ncols());
+        let left = DMatrix::identity(stress.ncols(), stress.ncols()) - &demands * demands.transpose();
+        let left: Vec<DVector<f64>> =
+            left.column_iter().map(|column| column.into_owned()).filter(|column| column.norm() > FELT).collect();
         let free = stress * orthonormal(&left, stress.ncols());
         let largest = free.amax();
-        let felt = |joint: usize| free.ncols() > 0 && free.row(joint).amax() > FELT * largest;
+        let felt = |joint: usize| free.row(joint).iter().any(|entry| entry.abs() > FELT * largest);
         (0..system.pairs.len()).filter(|&i| felt(i) || system.pairs[i].tangential.clone().any(felt)).collect()
     }
 }

@@ -52,6 +52,9 @@ fn rooms(problem: &ContactProblem, stress: &nalgebra::DMatrix<f64>) -> Vec<(f64,
 
 /// Looks for a proof that the parts do not fit.
 pub fn misfit(problem: &ContactProblem) -> Option<Misfit> {
+    if let Some(yielding) = &problem.system.yielding {
+        return misfit(&yielding.exactly(problem)?);
+    }
     let system = &*problem.system;
     let stress = &system.force_form.as_ref()?.self_stress;
     let rooms = rooms(problem, stress);

@@ -117,7 +117,7 @@ pub fn classify(
     let kernel = releasable_kernel(system);
     if kernel.ncols() == 0 {
         // Joints that repeat one another may demand what no displacement gives: then no answer need exist.
-        let class = if system.force_form.is_some() { RayClass::NoEquilibrium } else { RayClass::Fault };
+        let class = if system.repeats_joints() { RayClass::NoEquilibrium } else { RayClass::Fault };
         return (direction, class, None);
     }
     let inside = &kernel * (kernel.transpose() * &direction);
@@ -225,6 +225,25 @@ pub fn all_answers(problem: &ContactProblem, watch: &dyn Watch) -> Option<Enumer
 }
 
 impl RayReport {
+    /// Parts that do not fit together, where the run ended in what would be an answer if their joints yielded.
+    pub fn of_misfit(problem: &ContactProblem, misfit: Misfit) -> RayReport {
+        RayReport {
+            class: RayClass::NoEquilibrium,
+            verdict: Some(Verdict::Certified),
+            p: 0.0,
+            driver: String::new(),
+            direction: DVector::zeros(problem.system.joint_count()),
+            artefact: None,
+            mode: None,
+            powers: Vec::new(),
+            certificate: None,
+            misfit: Some(misfit),
+            out_of_time: false,
+            certificate_mode: None,
+            balanced: false,
+        }
+    }
+
     /// A collapse on Coulomb's cone where the run on the polygon ended in an answer: the motion of its certificate.
     pub fn of_certificate(problem: &ContactProblem, certificate: Certificate) -> RayReport {
         RayReport {
@@ -335,6 +354,9 @@ impl RayReport {
         // In force form p adds to distances too and to some reserves twice: it is no force that is missing.
         let forced = system.force_form.is_some();
         let mut text = match (self.class == RayClass::Mechanism, forced) {
+            _ if self.driver.is_empty() && self.misfit.is_some() => {
+                "There is an answer only if joints that repeat one another yield.".to_owned()
+            }
             _ if self.driver.is_empty() => {
                 "The motion costs no energy and the loads do work on it. The friction polygon holds it, whose corners lie \
                  outside of Coulomb's cone; the cone does not."

@@ -238,6 +238,11 @@ fn run_engine(
     watch: &dyn Watch,
 ) -> Result<(Run, Option<Parametric>), SolveError> {
     let system = &*problem.system;
+    if system.yielding.is_some() && !problem.cone {
+        // Multipliers are those of the cone.
+        let refusal = system.dependence_refusal("cone off").unwrap_or_default();
+        return Err(SolveError::Value(format!("{refusal}: `set cone on`")));
+    }
     let tie_rule = contact.tie_rule(rules.tie_break);
     let (run, dictionary) = match rules.engine {
         Engine::Scheme => keep_scheme(&contact.lcp, tie_rule, watch),

@@ -9,6 +9,7 @@ use crate::contact::cone::ConeFailure;
 use crate::contact::on_cone::OnCone;
 use crate::contact::problem::ContactProblem;
 use crate::explain::certificate::certify;
+use crate::explain::misfit::misfit;
 use crate::explain::motions::FreeMotions;
 use crate::explain::ray::RayReport;
 use crate::model::rules::Covering;
@@ -63,22 +64,35 @@ pub(super) fn taken(problem: &ContactProblem, polygon: JointState, watch: &dyn W
 impl Prepared {
     /// Whether the cone has no answer where the polygon has one, which is proved: then the result is that collapse.
     pub(super) fn collapses_on_cone(&self, solved: &mut Solved, problem: &ContactProblem, covering: Covering) -> bool {
+        let facets = problem.polygon.facets();
         let motions = FreeMotions::new(&problem.system, self.built());
-        let Some(certificate) = certify(problem, &motions).certificate else { return false };
-        let report = RayReport::of_certificate(problem, certificate);
+        let (report, why) = match certify(problem, &motions).certificate {
+            Some(certificate) => (
+                RayReport::of_certificate(problem, certificate),
+                format!("those of the polygon of {facets} facets, which has an answer; Coulomb's cone has none"),
+            ),
+            None => match misfit(problem) {
+                Some(misfit) => (
+                    RayReport::of_misfit(problem, misfit),
+                    "those that joints which repeat one another would have if they yielded".to_owned(),
+                ),
+                None => return false,
+            },
+        };
         let answer = &mut solved.answer;
         answer.outcome = OutcomeKind::Ray;
         answer.marginal = false;
         answer.ray = Some(report.record(&problem.system, covering));
         answer.check = Check::default();
         (answer.displacements, answer.members, answer.reactions) = (None, None, None);
-        answer.notes = vec![format!(
-            "the states of the pairs are those of the polygon of {} facets, which has an answer; Coulomb's cone has none",
-            problem.polygon.facets()
-        )];
+        answer.notes = vec![format!("the states of the pairs are {why}")];
+        answer.failure = None;
         if let Some(last) = answer.attempts.last_mut() {
             last.outcome = OutcomeKind::Ray;
-            last.why = Some("an answer on the polygon, a certified collapse on the cone".to_owned());
+            last.why = Some(match report.misfit {
+                Some(_) => "an answer if joints yielded that repeat one another, parts that do not fit".to_owned(),
+                None => "an answer on the polygon, a certified collapse on the cone".to_owned(),
+            });
         }
         (solved.ray, solved.rest, solved.warm) = (Some(Box::new(report)), None, None);
         true

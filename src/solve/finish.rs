@@ -186,24 +186,27 @@ impl Prepared {
 
 /// What is said of pairs whose joints repeat one another, so that the motion leaves their forces undetermined.
 fn notes_on_shared_forces(problem: &ContactProblem, state: &JointState) -> Vec<String> {
-    let otherwise = match problem.system.yielding {
-        Some(_) if state.free.iter().any(|&pair| problem.laws[pair].friction() > 0.0) => state.free.clone(),
-        _ => may_hold_otherwise(problem, &state.z),
-    };
+    let otherwise = may_hold_otherwise(problem, &state.z);
     let shared: Vec<usize> = state.free.iter().copied().filter(|pair| !otherwise.contains(pair)).collect();
+    let [those, own] = match problem.system.yielding {
+        Some(_) => ["those that equal and very small compliances in these joints give"; 2],
+        None => ["the forces of least norm that obey the laws", "those of least norm for the motion shown"],
+    };
     let kinds = [
         (
             shared,
-            "the motion does not depend on how they share what they carry, which is undetermined; shown are the forces of \
-             least norm that obey the laws",
+            format!(
+                "the motion does not depend on how they share what they carry, which is undetermined; shown are {those}"
+            ),
         ),
         (
             otherwise,
-            "the forces shown are those of least norm for the motion shown; with friction in these pairs another \
-             self-stress may hold another motion",
+            format!(
+                "the forces shown are {own}; with friction in these pairs another self-stress may hold another motion"
+            ),
         ),
     ];
-    let note = |(pairs, words): &(Vec<usize>, &str)| {
+    let note = |(pairs, words): &(Vec<usize>, String)| {
         let mut ids: Vec<String> =
             pairs.iter().take(NAMED).map(|&pair| problem.system.pairs[pair].id.clone()).collect();
         if pairs.len() > NAMED {

@@ -333,7 +333,7 @@ impl Prepared {
                     main.with_loads(structure).map_err(|error| main_system_problem(scenario, structure, error))?;
                 let loads = dependence(&main).loads(joint_loads(structure, &main));
                 let system = match &system.yielding {
-                    Some(made) => yielding(ContactSystem { loads, ..made.exact.clone() }),
+                    Some(made) => yielding(ContactSystem { loads, ..ContactSystem::clone(&made.exact) }),
                     None => ContactSystem { loads, ..ContactSystem::clone(system) },
                 };
                 let system = Arc::new(system);

@@ -69,7 +69,11 @@ impl Prepared {
         let certified = match solved.ray.as_mut() {
             Some(report) => certify_ray(report, &problem, self.built()),
             // An answer on the polygon that Newton's method did not take to the cone.
-            None => solved.answer.is_answer() && self.collapses_on_cone(&mut solved, &problem, rules.covering),
+            // Joints that press on and on end in a failed check.
+            None => {
+                (solved.answer.is_answer() || system.yielding.is_some())
+                    && self.collapses_on_cone(&mut solved, &problem, rules.covering)
+            }
         };
         if !certified && system.is_in_space() {
             if rules.are_default() {

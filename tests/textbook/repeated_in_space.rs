@@ -1,0 +1,188 @@
+//! Joints in space that repeat one another: a pipe shoe between guides, blocks that meet in corners.
+//!
+//! ```text
+//!        z │  guide (n = ∓y, clearance g)            ┌────┬────┐
+//!          │ ▒●▒                                     │ a  │ b  │  head joint a|b and two joints with the ground:
+//!          └──▲──── y   shoe (n = z)                 └────┴────┘  at their common edge z_ab = z_a − z_b
+//! ```
+
+use nalgebra::{Rotation3, Vector3};
+use serde_json::{Value, json};
+use stickslip::answer::record::{Answer, OutcomeKind, RayClass, State, Verdict};
+
+use crate::common::*;
+
+const EA: f64 = 500.0;
+const EI: f64 = 1000.0;
+const L: f64 = 10.0;
+
+fn vector(rotation: &Rotation3<f64>, x: f64, y: f64, z: f64) -> Value {
+    json!((rotation * Vector3::new(x, y, z)).as_slice())
+}
+
+/// A cantilever along x whose tip is pressed by N, pushed aside by P and pulled by T; shoe and guides as told.
+fn guided(rotation: &Rotation3<f64>, contacts: &[(&str, [f64; 3], &str, &str)]) -> Case {
+    let v = |x: f64, y: f64, z: f64| vector(rotation, x, y, z);
+    let load = |force: Value| json!([{ "point": { "at": "B", "force": force } }]);
+    let contacts: Vec<Value> = (contacts.iter())
+        .map(|(id, [x, y, z], friction, gap)| {
+            json!({ "id": id, "node": "B", "against": "ground", "normal": v(*x, *y, *z), "tangent": v(1.0, 0.0, 0.0),
+                    "friction": friction, "gap": gap })
+        })
+        .collect();
+    Case::json(json!({
+        "dimension": 3,
+        "parameters": { "P": 1, "T": 0, "N": 0, "f": 0.3, "s": 0.0, "g1": 0.01, "g2": 0.02, "zero": 0 },
+        "materials": { "m": { "E": 1, "nu": 0 } },
+        "sections": { "s": { "area": EA, "inertia_y": EI, "inertia_z": EI, "torsion": EI } },
+        "nodes": { "A": v(0.0, 0.0, 0.0), "B": v(L, 0.0, 0.0) },
+        "bars": [{ "id": "AB", "nodes": ["A", "B"], "material": "m", "section": "s", "orientation": v(0.0, 1.0, 0.0) }],
+        "supports": [{ "at": "A", "fixed": ["x", "y", "z", "rx", "ry", "rz"] }],
+        "contacts": contacts,
+        "loads": {
+            "press": { "factor": "N", "items": load(v(0.0, 0.0, -1.0)) },
+            "push": { "factor": "P", "items": load(v(0.0, -1.0, 0.0)) },
+            "pull": { "factor": "T", "items": load(v(1.0, 0.0, 0.0)) }
+        }
+    }))
+}
+
+const SIDES: [(&str, [f64; 3], &str, &str); 2] =
+    [("low", [0.0, 1.0, 0.0], "f", "g1"), ("up", [0.0, -1.0, 0.0], "f", "g2")];
+
+fn turned() -> Vec<Rotation3<f64>> {
+    let turn = |x: f64, y: f64, z: f64| Rotation3::new(Vector3::new(x, y, z));
+    vec![Rotation3::identity(), turn(0.3, -0.7, 1.1), turn(-1.9, 0.2, 0.4)]
+}
+
+/// With clearances: the tip moves by P/k until a side closes; that side carries P − k g, and holds an axial force up to f
+/// times that; the rest stretches the bar (k = 3EI/L³, k_a = EA/L).
+#[test]
+fn guide_with_clearances_in_space() {
+    let (k, k_a) = (3.0 * EI / L.powi(3), EA / L);
+    let (g1, g2, f) = (0.01, 0.02, 0.3);
+    for rotation in turned() {
+        let case = guided(&rotation, &SIDES);
+        for (p, t) in [(1.0, 0.0), (1.0, 0.2), (1.0, 0.5), (1.0, -0.5), (-1.0, 0.7), (0.02, 0.3), (0.0, -0.3)] {
+            let answer = case.solve(&[("P", p), ("T", t)]);
+            is_answer(&answer);
+            let [low, up] = &answer.pairs[..] else { panic!() };
+            let (x_low, x_up) = (f64::max(p - k * g1, 0.0), f64::max(-p - k * g2, 0.0));
+            let down = (p / k).clamp(-g2, g1);
+            let held = f * (x_low + x_up);
+            let slip = (t.abs() - held).max(0.0) * t.signum() / k_a;
+            let what = format!("P = {p}, T = {t}, {rotation}");
+            near(&what, low.x_n, x_low, 1e-9, 1.0);
+            near(&what, up.x_n, x_up, 1e-9, 1.0);
+            near(&what, low.z_n, g1 - down, 1e-9, g1);
+            near(&what, up.z_n, g2 + down, 1e-9, g2);
+            near_all(&what, &low.slip(), &[slip, 0.0], 1e-9);
+            near_all(&what, &up.slip(), &[slip, 0.0], 1e-9);
+            near(&what, low.friction()[0] + up.friction()[0], -t.signum() * t.abs().min(held), 1e-9, 1.0);
+        }
+    }
+}
+
+/// A shoe under N between guides: the tip slips aside by g1 and along by u, where
+///
+/// ```text
+///     k_a u = T − f_s N u/√(u² + g1²) − f x,     x = P − k g1 − f_s N g1/√(u² + g1²)   (the guide's force)
+/// ```
+#[test]
+fn shoe_between_guides() {
+    let (k, k_a) = (3.0 * EI / L.powi(3), EA / L);
+    let (f, s, n, p, t, g1) = (0.2, 0.4, 1.5, 2.0, 1.2, 0.01);
+    let guide = |u: f64| p - k * g1 - s * n * g1 / u.hypot(g1);
+    let (mut low, mut high) = (0.0, t / k_a);
+    for _ in 0..200 {
+        let u = 0.5 * (low + high);
+        let rest = t - s * n * u / f64::hypot(u, g1) - f * guide(u) - k_a * u;
+        if rest > 0.0 { low = u } else { high = u }
+    }
+    let u = 0.5 * (low + high);
+    assert!(u > 1e-3 && guide(u) > 0.1, "the case is one of slip along the guide: {u}, {}", guide(u));
+    for rotation in turned() {
+        let [low, up] = SIDES;
+        let case = guided(&rotation, &[("shoe", [0.0, 0.0, 1.0], "s", "zero"), low, up]);
+        let answer = case.solve(&[("f", f), ("s", s), ("N", n), ("P", p), ("T", t)]);
+        is_answer(&answer);
+        let [shoe, low, up] = &answer.pairs[..] else { panic!() };
+        near("shoe", shoe.x_n, n, 1e-9, 1.0);
+        near("guide", low.x_n, guide(u), 1e-9, 1.0);
+        assert_eq!((shoe.state, low.state, up.state), (State::Slip, State::Slip, State::Open));
+        near("along", shoe.slip()[0], u, 1e-9, u);
+        near("aside", shoe.slip()[1].abs(), g1, 1e-9, g1);
+        near("friction of the guide", low.friction()[0], -f * guide(u), 1e-9, 1.0);
+        near("friction of the shoe", shoe.friction()[0], -s * n * u / u.hypot(g1), 1e-9, 1.0);
+    }
+}
+
+/// Without clearance and friction the sides hold the tip aside: x_low − x_up = P, of least norm (P, 0); said to be so.
+#[test]
+fn guide_without_clearance_in_space() {
+    let case = guided(&Rotation3::identity(), &SIDES);
+    let answer = case.solve(&[("g1", 0.0), ("g2", 0.0), ("f", 0.0), ("P", 0.7), ("T", 0.3)]);
+    is_answer(&answer);
+    let [low, up] = &answer.pairs[..] else { panic!() };
+    near_all("sides", &[low.x_n, up.x_n], &[0.7, 0.0], 1e-9);
+    near("along", low.slip()[0], 0.3 * L / EA, 1e-9, 1e-3);
+    assert!(answer.notes.iter().any(|note| note.contains("repeat one another")), "{:?}", answer.notes);
+}
+
+/// Sides that overlap have no answer, whatever the friction, and that is proved: z_low + z_up = g1 + g2 < 0.
+#[test]
+fn guide_with_interference_in_space() {
+    let case = guided(&Rotation3::identity(), &SIDES);
+    let answer = case.solve(&[("g1", -0.01), ("g2", 0.004)]);
+    assert_eq!(answer.outcome, OutcomeKind::Ray);
+    let ray = answer.ray.expect("a ray");
+    assert_eq!((ray.class, ray.verdict, ray.misfit), (RayClass::NoEquilibrium, Some(Verdict::Certified), true));
+    assert!(ray.explanation.contains("sum up to -0.006"), "{}", ray.explanation);
+}
+
+/// `blocks` in a row on rough ground with head joints between them, the first pushed by H, each with a top load of 1.
+fn row(blocks: usize) -> Case {
+    let id = |i: usize| format!("b{i}");
+    let bricks: Vec<Value> = (0..blocks)
+        .map(|i| {
+            json!({ "id": id(i), "origin": [2 * i, 0, 0], "size": [2, 1, 1], "divisions": [2, 1, 1], "material": "m" })
+        })
+        .collect();
+    let floor = (0..blocks).map(|i| {
+        json!({ "id": format!("floor{i}"), "face": format!("{}.bottom", id(i)), "against": "ground", "friction": 0.5 })
+    });
+    let heads = (1..blocks).map(|i| {
+        json!({ "id": format!("head{i}"), "face": format!("{}.left", id(i)), "against": format!("{}.right", id(i - 1)),
+                "friction": 0.3 })
+    });
+    let weights: Vec<Value> =
+        (0..blocks).map(|i| json!({ "point": { "at": format!("{}.top", id(i)), "force": [0, 0, -1] } })).collect();
+    Case::json(json!({
+        "dimension": 3,
+        "parameters": { "H": 0 },
+        "materials": { "m": { "E": 1000, "nu": 0.2 } },
+        "bricks": bricks,
+        "contacts": floor.chain(heads).collect::<Vec<_>>(),
+        "loads": { "weight": { "items": weights },
+                   "push": { "factor": "H", "items": [{ "point": { "at": "b0.left", "force": [1, 0, 0] } }] } }
+    }))
+}
+
+/// Three blocks in a row stand under their weight and slide together beyond f W: what a push meets is the friction of all
+/// floors, Σ x_n is the weight, and the sums of forces do not depend on how the corners share them.
+#[test]
+fn a_row_of_blocks_slides_as_one() {
+    let (case, weight, f) = (row(3), 3.0, 0.5);
+    let sum = |answer: &Answer, read: fn(&stickslip::answer::record::PairState) -> f64| -> f64 {
+        answer.pairs.iter().filter(|pair| pair.id.starts_with("floor")).map(read).sum()
+    };
+    for h in [0.0, 0.4, 0.9, 1.3] {
+        let answer = case.solve(&[("H", h)]);
+        is_answer(&answer);
+        near("weight", sum(&answer, |pair| pair.x_n), weight, 1e-9, 1.0);
+        near("push", sum(&answer, |pair| pair.friction()[0]), -h, 1e-9, 1.0);
+        near("across", sum(&answer, |pair| pair.friction()[1]), 0.0, 1e-9, 1.0);
+    }
+    let answer = case.solve(&[("H", f * weight * (1.0 + 1e-4))]);
+    assert_eq!(answer.ray.expect("a collapse").verdict, Some(Verdict::Certified));
+}
