@@ -63,6 +63,25 @@ pub(crate) fn add_response(target: &mut [f64], matrix: &[f64], x: &[f64]) {
     add_product(target, matrix, x, rows, 1, x.len());
 }
 
+/// target += Σ factor · column over the given (column, factor).
+pub(crate) fn add_columns<'a>(target: &mut [f64], terms: impl Iterator<Item = (&'a [f64], f64)>) {
+    let terms: Vec<_> = terms.collect();
+    // Four columns at a time: the sum is read and written a quarter as often.
+    let mut fours = terms.chunks_exact(4);
+    for four in &mut fours {
+        let [a, b, c, d] = [four[0], four[1], four[2], four[3]];
+        let columns = a.0.iter().zip(b.0).zip(c.0.iter().zip(d.0));
+        for (sum, ((w, x), (y, z))) in target.iter_mut().zip(columns) {
+            *sum += (a.1 * w + b.1 * x) + (c.1 * y + d.1 * z);
+        }
+    }
+    for &(column, factor) in fours.remainder() {
+        for (sum, entry) in target.iter_mut().zip(column) {
+            *sum += factor * entry;
+        }
+    }
+}
+
 /// high + low += matrix · x, the rounding errors of every product and sum carried along in `low` (Ogita, Rump, Oishi
 /// 2005), column by column as the matrix is stored.
 pub(crate) fn add_doubled_response(high: &mut [f64], low: &mut [f64], matrix: &[f64], x: &[f64]) {

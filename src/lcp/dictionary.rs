@@ -10,7 +10,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::dense::Factor;
 use super::mirrored::MirroredLcp;
-use super::updated_matrix::{Combination, UpdatedMatrix};
+use super::updated_matrix::UpdatedMatrix;
+use super::waiting_steps::Combination;
 use crate::lcp::basis::Basis;
 
 /// A variable of the dictionary. `W(i)` and `Z(i)` of a mirrored row stand for the member of the couple that
@@ -134,9 +135,9 @@ impl Dictionary {
         self.entries.exchange(None, c, &rates, &Combination::default(), 1.0);
     }
 
-    /// How often waiting elimination steps were multiplied out.
-    pub(crate) fn flushes(&self) -> usize {
-        self.entries.flushes()
+    /// How many batches of elimination steps were filled.
+    pub(crate) fn batches(&self) -> usize {
+        self.entries.filled()
     }
 
     pub(crate) fn place(&self, variable: Slot) -> Place {
@@ -160,8 +161,14 @@ impl Dictionary {
         self.entries.entry(r, c)
     }
 
+    /// The columns of nonbasic w take waiting steps over together, where entries of many of them will be asked for.
+    pub(crate) fn settle_w(&mut self) {
+        let columns = self.column.iter().enumerate().filter(|column| matches!(column.1, Slot::W(_)));
+        self.entries.settle(columns.map(|(c, _)| c));
+    }
+
     /// The entries in the given rows and columns, column by column.
-    pub(crate) fn block(&self, rows: &[usize], columns: &[usize]) -> Vec<f64> {
+    pub(crate) fn block(&mut self, rows: &[usize], columns: &[usize]) -> Vec<f64> {
         self.entries.block(rows, columns)
     }
 
@@ -171,7 +178,7 @@ impl Dictionary {
     }
 
     /// Column c.
-    pub(crate) fn fetch_column(&self, c: usize, into: &mut Vec<f64>) {
+    pub(crate) fn fetch_column(&mut self, c: usize, into: &mut Vec<f64>) {
         self.entries.column(c, into);
     }
 

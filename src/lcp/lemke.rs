@@ -141,6 +141,9 @@ impl SchemeEngine {
     /// Index of the candidate that leaves of those tied along column c.
     fn choose(&mut self, c: usize, tied: &[Candidate], at_start: bool) -> usize {
         let names: Vec<Variable> = tied.iter().map(|candidate| self.stand.name(candidate)).collect();
+        if tied.len() > 1 {
+            self.stand.dictionary.settle_w();
+        }
         let table_row = |name: Variable| self.table_row.get(&name).copied().unwrap_or(usize::MAX);
         let rows = self.stand.inverse_rows(c, tied, &table_row);
         let mut random = self.random.clone();

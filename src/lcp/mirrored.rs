@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::dense::add_response;
+use super::dense::add_columns;
 use super::outcome::Point;
 use super::problem::{Lcp, Scale, as_good_as_nothing};
 
@@ -130,7 +130,9 @@ impl MirroredLcp {
     /// M z.
     pub fn times(&self, z: &[f64]) -> DVector<f64> {
         let mut response = DVector::zeros(self.size());
-        add_response(response.as_mut_slice(), self.base.as_slice(), z);
+        // Most pairs stick, and their displacements are zero.
+        let columns = self.base.as_slice().chunks_exact(self.size().max(1)).zip(z.iter().copied());
+        add_columns(response.as_mut_slice(), columns.filter(|column| column.1 != 0.0));
         self.couple(response.as_mut_slice());
         response
     }

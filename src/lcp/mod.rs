@@ -36,5 +36,6 @@ pub mod problem;
 pub mod ratio_test;
 mod updated_matrix;
 pub mod variable;
+mod waiting_steps;
 
 pub(crate) use dense::{compute_sequentially, smallest_eigenvalue, subtract_square};

@@ -206,7 +206,10 @@ impl Parametric {
     }
 
     /// Index of the candidate that leaves of those tied along column c.
-    fn choose(&self, c: usize, tied: &[Candidate]) -> usize {
+    fn choose(&mut self, c: usize, tied: &[Candidate]) -> usize {
+        if tied.len() > 1 {
+            self.stand.dictionary.settle_w();
+        }
         let names: Vec<Variable> = tied.iter().map(|row| self.stand.name(row)).collect();
         // The lexicographic rule asks for no rows of the tableau and draws nothing.
         let rows = self.stand.inverse_rows(c, tied, &|_| 0);

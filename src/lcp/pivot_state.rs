@@ -81,7 +81,7 @@ pub(crate) struct PivotState {
     pub(crate) fresh: bool,
     /// How often it was built afresh.
     pub(crate) refreshes: usize,
-    /// Number of the flush after which the values were last compared with the data.
+    /// Number of the batch of steps after which the values were last compared with the data.
     compared: usize,
 }
 

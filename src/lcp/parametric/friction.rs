@@ -10,6 +10,15 @@ use super::Parametric;
 const HOLDS: f64 = 1e-12;
 
 impl Parametric {
+    /// Row of the normal force that the bound of row i depends on; `None` where there is none, and in an open pair.
+    fn normal_row(&self, i: usize) -> Option<usize> {
+        let n = self.stand.lcp.mirrors[i].as_ref()?.normal?;
+        match self.stand.dictionary.place(Slot::W(n)) {
+            Place::Row(r) => Some(r),
+            Place::Column(_) => None,
+        }
+    }
+
     /// The answer of the same scheme after a change of friction, f_i + `change`_i, per primary row; `extra` is what
     /// the constants b_i of the LCP held so far exceed those of the problem by, halved (extra cohesion). The
     /// dictionary stays that of the old friction: a slipping row's new w = 0 means w = extra − change·w_n in it,
@@ -17,23 +26,15 @@ impl Parametric {
     /// not settle or the scheme does not hold.
     pub fn at_friction(&mut self, change: &[f64], extra: &[f64]) -> Option<Point> {
         self.sharpen();
-        let (d, lcp) = (&self.stand.dictionary, &self.stand.lcp);
-        let normal_row = |i: usize| {
-            let n = lcp.mirrors[i].as_ref()?.normal?;
-            match d.place(Slot::W(n)) {
-                Place::Row(r) => Some(r),
-                Place::Column(_) => None,
-            }
-        };
         // Slipping rows: their own column, and which of the `pressed` rows is that of their w_n (none in an open
         // pair).
         let mut pressed: Vec<usize> = Vec::new();
         let mut slipping: Vec<(usize, usize, Option<usize>)> = Vec::new();
-        for i in 0..lcp.size() {
-            let Place::Column(c) = d.place(Slot::W(i)) else {
+        for i in 0..change.len() {
+            let Some(c) = self.stand.column_of(Slot::W(i)) else {
                 continue;
             };
-            let normal = normal_row(i).filter(|_| change[i] != 0.0);
+            let normal = self.normal_row(i).filter(|_| change[i] != 0.0);
             if normal.is_some() || extra[i] != 0.0 {
                 slipping.push((i, c, normal.map(|_| pressed.len())));
                 pressed.extend(normal);
@@ -41,7 +42,8 @@ impl Parametric {
         }
         // What one imposed unit on each slipping row does to the w_n of the pressed ones.
         let columns: Vec<usize> = slipping.iter().map(|&(_, c, _)| c).collect();
-        let influence = d.block(&pressed, &columns);
+        let influence = self.stand.dictionary.block(&pressed, &columns);
+        let (d, lcp) = (&self.stand.dictionary, &self.stand.lcp);
         let start: Vec<f64> = pressed.iter().map(|&r| d.value[r]).collect();
         let size = start.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut normals = start.clone();
@@ -82,7 +84,7 @@ impl Parametric {
             let Some(mirror) = &lcp.mirrors[i] else {
                 continue;
             };
-            let w_n = normal_row(i).map_or(0.0, |r| value[r]);
+            let w_n = self.normal_row(i).map_or(0.0, |r| value[r]);
             let own = match d.place(Slot::W(i)) {
                 Place::Row(r) => value[r] - extra[i] + change[i] * w_n,
                 Place::Column(_) => 0.0,

@@ -102,10 +102,10 @@ impl PivotState {
         self.fresh
     }
 
-    /// After each flush the values are compared with the data. `false`: they are wrong and the equations are singular.
+    /// After each batch of steps the values are compared with the data. `false`: they are wrong and the equations are singular.
     pub(crate) fn check_drift(&mut self) -> bool {
-        let flushes = self.dictionary.flushes();
-        if std::mem::replace(&mut self.compared, flushes) == flushes {
+        let batches = self.dictionary.batches();
+        if std::mem::replace(&mut self.compared, batches) == batches {
             return true;
         }
         self.fresh || self.agrees() || self.refresh()
