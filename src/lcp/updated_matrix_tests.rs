@@ -46,7 +46,7 @@ fn walk(rng: &mut ChaCha8Rng, (rows, columns): (usize, usize), read: usize) -> b
     let mut plain = Plain(start.clone());
     let mut updated = UpdatedMatrix::new(rows, columns, start.as_slice().to_vec());
     let mut largest = 1.0_f64;
-    for step in 0..150 {
+    for step in 0..250 {
         let (r, other) = (rng.random_range(0..rows), rng.random_range(0..rows));
         let (c, unit) = (rng.random_range(0..columns), rng.random_range(0..columns));
         let mut u = Vec::new();
@@ -110,7 +110,7 @@ fn walk(rng: &mut ChaCha8Rng, (rows, columns): (usize, usize), read: usize) -> b
 fn waiting_steps_read_as_if_made_at_once() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     // One block of columns that all batches are at once multiplied out in, and several that fall behind differently.
-    for (size, read) in [((9, 11), 3), ((12, 100), 1), ((40, 100), 0)] {
+    for (size, read) in [((9, 11), 3), ((12, 70), 1), ((40, 140), 0)] {
         let whole = (0..30).filter(|_| walk(&mut rng, size, read)).count();
         assert!(whole > 5, "{whole} runs of {size:?} went past the steps that may wait");
     }

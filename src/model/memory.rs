@@ -36,9 +36,9 @@ pub fn for_mesh(bytes: usize) -> f64 {
 }
 
 /// Bytes needed for so many contact joints: R, its copy without the kernel, and the dictionary of the pivots with
-/// its workspace, all dense.
+/// the steps that wait, all dense.
 pub fn for_joints(joints: f64) -> f64 {
-    4.0 * 8.0 * joints * joints
+    6.0 * 8.0 * joints * joints
 }
 
 /// Bytes needed for so many entries of a sparse matrix: read, checked and assembled.
