@@ -373,3 +373,7 @@ impl Dictionary {
         true
     }
 }
+
+#[cfg(test)]
+#[path = "dictionary_tests.rs"]
+mod tests;

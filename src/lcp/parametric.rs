@@ -360,7 +360,11 @@ impl Parametric {
         let Some(c) = self.fetch() else {
             return lost();
         };
-        if knots.is_none() && self.faint_t_rate(c).is_some() {
+        if self.faint_t_rate(c).is_some() {
+            // A dictionary that is off would let rows block that do not fall at all.
+            if knots.is_some() && !self.stand.fresh && self.stand.refresh() {
+                self.stand.fetch(c);
+            }
             self.stand.refine_column(c);
         }
         let (mut tied, mut step) = self.blocking(c);
@@ -389,7 +393,7 @@ impl Parametric {
                 return ControlFlow::Break(End::Target);
             }
         }
-        if tied.is_empty() {
+        if tied.is_empty() || t_rate == 0.0 && self.stand.blocks_beyond_measure(c, &tied, step, BLURRED) {
             return ControlFlow::Break(if t_rate > 0.0 { End::Unbounded } else { End::Limit(self.ray(c)) });
         }
         let leaving = tied[self.choose(c, &tied)];

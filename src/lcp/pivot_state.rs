@@ -222,12 +222,18 @@ impl PivotState {
     }
 
     /// The candidates at the smallest ratio, and that ratio: rows that fall when the variable of column c grows.
-    /// `watch_slipping`: also the other reserve of a slipping couple where e ≤ 0 does not keep it ≥ 0 by
-    /// construction; the textbook rules stumble over it.
-    pub(crate) fn blocking(&mut self, c: usize, watch_slipping: bool) -> (Vec<Candidate>, f64) {
+    /// `to_zero`: p is to fall to zero and blocks there, and so does the other reserve of a slipping couple where e ≤ 0
+    /// does not keep it ≥ 0 by construction; the textbook rules stumble over it.
+    pub(crate) fn blocking(&mut self, c: usize, to_zero: bool) -> (Vec<Candidate>, f64) {
         let mut ratios = std::mem::take(&mut self.ratios);
-        let mut smallest = self.ratios_of_rows(c, &mut ratios);
-        let mut tied = self.falling_mirrors(c, watch_slipping);
+        self.ratios_of_rows(c, &mut ratios);
+        if let Place::Row(r) = self.dictionary.place(Slot::P)
+            && !to_zero
+        {
+            ratios[r] = f64::INFINITY;
+        }
+        let mut smallest = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut tied = self.falling_mirrors(c, to_zero);
         for mirror in &tied {
             smallest = smallest.min(mirror.value / mirror.fall);
         }
@@ -248,8 +254,8 @@ impl PivotState {
     }
 
     /// Of each row: how far the variable of column c can grow before the row is at zero, infinite where it does not
-    /// fall. Returns the smallest.
-    fn ratios_of_rows(&self, c: usize, ratios: &mut Vec<f64>) -> f64 {
+    /// fall.
+    fn ratios_of_rows(&self, c: usize, ratios: &mut Vec<f64>) {
         let d = &self.dictionary;
         let (size, sizes) = (NOISE * self.rate_total(c), &self.row_sizes);
         let p_rate = NOISE * self.p_rate_size(c);
@@ -260,7 +266,6 @@ impl PivotState {
                 if *rate < -noise { value.max(0.0) / -rate } else { f64::INFINITY }
             },
         ));
-        ratios.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// The hidden members that fall when the variable of column c grows.

@@ -77,3 +77,36 @@ fn a_limit_of_zero_has_nothing_beside_it() {
         assert!(!text(&mut point, command).contains("confirmed"), "{command}");
     }
 }
+
+/// A portal that no bolt holds slides at the wind f q L or turns over about its far heel at q L (L + b)/(2 h), whichever
+/// comes first; how stiff it is makes no difference. Its limit is a motion that no force resists: rounding of the compliance
+/// matrix must not be taken for a row that blocks it, nor the weight of a path for something that blocks at all.
+#[test]
+fn a_free_portal_slides_or_turns_over_however_stiff_it_is() {
+    let scenario = include_str!("../../scenarios/portal.json");
+    for (span, height, load, friction, width, inertia) in [
+        (12.0, 5.0, 20.0, 0.5, 0.4, 4.507e-4),
+        (22.0, 8.0, 20.0, 0.1, 0.2, 1e-5),
+        (14.0, 4.0, 40.0, 0.5, 0.2, 1e-5),
+        (8.0, 4.0, 40.0, 0.2, 0.2, 1e-5),
+        (22.0, 8.0, 30.0, 0.2, 0.2, 4.5e-4),
+        (18.0, 3.0, 2.0, 0.5, 0.2, 1e-5),
+        (18.0, 8.0, 20.0, 0.5, 0.2, 5e-3),
+        (10.0, 8.0, 30.0, 0.7, 0.4, 4.5e-4),
+        (14.0, 6.5, 40.0, 0.2, 0.2, 5e-3),
+    ] {
+        let mut portal = read(scenario);
+        let values = [("L", span), ("h", height), ("q", load), ("f", friction), ("b", width), ("I", inertia)];
+        for (name, value) in values {
+            text(&mut portal, &format!("set {name} {value}"));
+        }
+        let weight = load * span;
+        let limit = f64::min(friction * weight, weight * (span + width) / (2.0 * height));
+        for start in [1.0, limit / 4.0] {
+            text(&mut portal, &format!("set W {start}"));
+            let found = report(&mut portal, "limit wind").unwrap();
+            let near = found["limit"].as_f64().is_some_and(|found| (found - limit).abs() <= 1e-6 * limit);
+            assert!(near && found["confirmed"] == true, "{values:?} from {start}, {limit} expected: {found}");
+        }
+    }
+}

@@ -42,9 +42,21 @@ impl PivotState {
     /// By how much rounding may move a value, relative to the largest load: where the responses of single
     /// displacements are much larger than the load and cancel.
     pub(crate) fn blur(&self) -> f64 {
-        let row = self.lcp.scale.row.iter().fold(0.0, |a: f64, b| a.max(*b));
-        let load = self.lcp.load_size().max(f64::MIN_POSITIVE);
-        ROUNDING * row * self.size_of(&self.dictionary.value) / load
+        self.blur_of(self.size_of(&self.dictionary.value)) / self.lcp.load_size().max(f64::MIN_POSITIVE)
+    }
+
+    /// By how much rounding may move a value where Σ column_k |z_k| = `size`.
+    fn blur_of(&self, size: f64) -> f64 {
+        ROUNDING * size * self.lcp.scale.row.iter().fold(0.0, |a: f64, b| a.max(*b))
+    }
+
+    /// Whether rows that hardly fall along column c block it only so far away that rounding of the displacements there
+    /// would exceed `share` of the load, p included: nothing tells them from rows that do not fall.
+    pub(crate) fn blocks_beyond_measure(&self, c: usize, tied: &[Candidate], step: f64, share: f64) -> bool {
+        let load = self.sizes.q.iter().zip(&self.sizes.d).map(|(q, d)| q + d * self.p().abs()).fold(0.0, f64::max);
+        tied.iter().all(|tied| self.relative_fall(c, tied) <= SUSPICIOUS)
+            && load > 0.0
+            && self.blur_of(self.rate_total(c) * step) > share * load
     }
 
     /// All variables at the vertex, as true to the data as solving its equations afresh would make them: one step of
