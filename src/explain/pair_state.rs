@@ -2,15 +2,15 @@
 
 use crate::answer::record::{PairState, State};
 use crate::model::units::Units;
-use crate::text::number::{short, with_unit};
+use crate::text::number::{measured, short};
 
 /// A pair whose smaller reserve is below this share of its bound stands at its limit.
 const AT_LIMIT: f64 = 1e-12;
 
 /// What holds a pair in its state, in a sentence.
 pub fn cause(pair: &PairState, units: &Units) -> String {
-    let force = |value: f64| with_unit(&short(value), units.force.as_deref());
-    let length = |value: f64| with_unit(&short(value), units.length.as_deref());
+    let force = |value: f64| measured(value, units.force.as_deref());
+    let length = |value: f64| measured(value, units.length.as_deref());
     let (x_t, bound) = (pair.x_t, force(pair.bound));
     match pair.state {
         State::Open => {

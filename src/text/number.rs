@@ -40,6 +40,23 @@ pub fn with_unit(number: &str, unit: Option<&str>) -> String {
     }
 }
 
+/// A measured value with its unit, for sentences: `53.88 µm` where tables say µm, not `53.88e-6 m`.
+pub fn measured(value: f64, unit: Option<&str>) -> String {
+    let (numbers, unit) = measured_alike(&[value], unit);
+    with_unit(&numbers.concat(), unit)
+}
+
+/// Measured values for sentences, which share a unit: in metres where all can be read there, else in mm or µm.
+pub fn measured_alike<'u>(values: &[f64], unit: Option<&'u str>) -> (Vec<String>, Option<&'u str>) {
+    let is_small = |value: &f64| figures(*value, DIGITS).is_some_and(|(_, exponent)| exponent < -4);
+    let (times, unit) = match values.iter().fold(0.0, |most: f64, value| most.max(value.abs())) {
+        _ if unit != Some("m") || !values.iter().any(is_small) => (1.0, unit),
+        most if most < 1e-3 => (1e6, Some("µm")),
+        _ => (1e3, Some("mm")),
+    };
+    (values.iter().map(|value| short(times * value)).collect(), unit)
+}
+
 /// A name and its unit as they stand over a column or beside an axis: `x_n [kN]`.
 pub fn heading(name: &str, unit: Option<&str>) -> String {
     match unit {
@@ -107,6 +124,22 @@ mod tests {
         for (value, text) in cases {
             assert_eq!(in_full(value), text, "{value:e}");
         }
+    }
+
+    #[test]
+    fn measured_lengths_share_a_unit_that_can_be_read() {
+        let said = |values: &[f64], unit: &str| {
+            let (numbers, unit) = measured_alike(values, Some(unit));
+            format!("{} {}", numbers.join(", "), unit.unwrap_or_default())
+        };
+        assert_eq!(said(&[0.005, 0.0005], "m"), "0.005, 0.0005 m");
+        assert_eq!(said(&[33.097e-6], "m"), "33.097 µm");
+        assert_eq!(said(&[0.005, -33.097e-6], "m"), "5, -0.033097 mm");
+        assert_eq!(said(&[2.5e-5, 0.0], "m"), "25, 0 µm");
+        assert_eq!(said(&[33.097e-6], "mm"), "33.097e-6 mm");
+        assert_eq!(said(&[3.5e-10], "m"), "0.00035 µm");
+        assert_eq!(measured(-5.388e-5, Some("m")), "-53.88 µm");
+        assert_eq!(measured(-5.388e-5, None), "-53.88e-6");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::path::exact;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::path::calibrate::{Calibration, Group};
-use crate::text::number::{short, with_unit};
+use crate::text::number::{measured, measured_alike, short, with_unit};
 
 /// Most sensitivities that stand in a row.
 const COLUMNS: usize = 4;
@@ -57,10 +57,11 @@ pub fn write(out: &mut dyn Write, found: &Calibration, style: &Style) -> io::Res
     columns.extend(shown.iter().map(|group| Column::plain(&format!("per {}", group.parameter), None).droppable(1)));
     let mut table = Table::new(columns);
     for row in &found.measurements {
-        let number = |value: f64| Cell::from(with_unit(&short(value), row.unit.as_deref()));
-        let error = row.error.map_or(String::new(), |error| format!(" ± {}", short(error)));
-        let measured = Cell::from(with_unit(&format!("{}{error}", short(row.measured)), row.unit.as_deref()));
-        let mut cells = vec![Cell::from(row.quantity.clone()), measured, number(row.computed), number(row.residual)];
+        let number = |value: f64| Cell::from(measured(value, row.unit.as_deref()));
+        let (numbers, unit) =
+            measured_alike(&[[row.measured].as_slice(), row.error.as_slice()].concat(), row.unit.as_deref());
+        let given = Cell::from(with_unit(&numbers.join(" ± "), unit));
+        let mut cells = vec![Cell::from(row.quantity.clone()), given, number(row.computed), number(row.residual)];
         cells.extend(row.sensitivity[..shown.len()].iter().map(|slope| Cell::from(short(*slope))));
         table.rows.push(Row::new(cells));
     }

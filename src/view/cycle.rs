@@ -10,7 +10,7 @@ use crate::model::units::Units;
 use crate::path::cycle::{Cycle, Kind, ShakedownLimit, Turn};
 use crate::path::cycle_starts::Starts;
 use crate::path::static_shakedown::{MOST_PAIRS, Static};
-use crate::text::number::{short, with_unit};
+use crate::text::number::{measured, short, with_unit};
 
 /// Cycles shown of a longer list, at its beginning and at its end.
 const SHOWN: usize = 6;
@@ -45,7 +45,7 @@ pub fn write(out: &mut dyn Write, cycle: &Cycle, unit: Option<&str>, units: &Uni
     let [from, to] = cycle.ends.map(|end| with_unit(&short(end), unit));
     let mut line = format!("{} from {from} to {to} and back: {}", cycle.name, word(cycle.kind));
     if let (Kind::Ratchets, Some((pair, net))) = (cycle.kind, cycle.turns.last().and_then(furthest)) {
-        line.push_str(&format!(", {} per cycle at {pair}", with_unit(&exact(net), units.length.as_deref())));
+        line.push_str(&format!(", {} per cycle at {pair}", measured(net, units.length.as_deref())));
     }
     style.paragraph(out, role(cycle.kind), &line)?;
     style.paragraph(out, Role::Plain, &cycle.sentence)?;

@@ -9,7 +9,7 @@ use crate::answer::diagram::{Diagram, Internal, Place};
 use crate::answer::record::MemberForces;
 use crate::answer::rounding::{denoised, largest};
 use crate::model::units::Units;
-use crate::text::number::{short, with_unit};
+use crate::text::number::measured;
 
 /// Writes N, Q, M at both ends of every element of `bar` (of all bars without one). Tension, and M with tension
 /// on the −y side of the bar, are positive.
@@ -68,8 +68,8 @@ pub fn extremes(diagram: &Diagram, which: Internal, units: &Units) -> String {
     let extremes = diagram.extremes(which);
     let scale = largest(extremes.iter().map(|place| place.value));
     let [least, most] = extremes.map(|Place { distance, value }| {
-        let value = with_unit(&short(denoised(value, scale)), unit.as_deref());
-        format!("{value} at {}", with_unit(&short(distance), length_unit(units).as_deref()))
+        let value = measured(denoised(value, scale), unit.as_deref());
+        format!("{value} at {}", measured(distance, length_unit(units).as_deref()))
     });
     format!("{}: largest {most}, least {least}", which.symbol())
 }

@@ -9,12 +9,12 @@ use crate::model::quantity::Quantity;
 use crate::model::units::Units;
 use crate::path::quantity::{NoValue, OnPath, Value};
 use crate::path::record::PathRecord;
-use crate::text::number::{short, with_unit};
+use crate::text::number::{measured, with_unit};
 
 /// A value with its unit, or why there is none.
 pub fn shown(quantity: &Quantity, value: &Result<Value, NoValue>, units: &Units) -> (String, Role) {
     match value {
-        Ok(Value::Number(value)) => (with_unit(&short(*value), quantity.unit(units).as_deref()), Role::Plain),
+        Ok(Value::Number(value)) => (measured(*value, quantity.unit(units).as_deref()), Role::Plain),
         Ok(Value::Word(word)) => (word.clone(), Role::Plain),
         Err(reason) => (reason.0.clone(), Role::Muted),
     }

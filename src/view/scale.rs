@@ -7,7 +7,7 @@
 //! of its own, in the unit of the column: `2.1e-9` is told apart from `0`, which is nothing or rounding.
 
 use crate::answer::rounding::{denoised, largest};
-use crate::text::number::{DIGITS, figures, placed, short, simple, third, trimmed};
+use crate::text::number::{DIGITS, figures, placed, simple, third, trimmed};
 
 /// What is smaller than this share of the largest has a power of ten of its own.
 pub const APART: f64 = 1e-3;
@@ -93,13 +93,13 @@ impl Scale {
         format!("{}e{}", placed(value, &figures, 0), exponent - self.power)
     }
 
-    /// The unit with the power before it: `10⁻⁶ kN`, `µm`, `1e-6 m` in ASCII; `None` where there is nothing to say.
+    /// The unit with the power before it: `10⁻⁶ kN`, `µm`, `1e-6 kN` and `um` in ASCII; `None` where there is nothing to say.
     pub fn unit(&self, unit: Option<&str>, ascii: bool) -> Option<String> {
         let unit = unit.filter(|unit| !unit.is_empty());
         let power = match (self.power, unit, ascii) {
             (0, ..) => return unit.map(str::to_owned),
             (-3, Some("m"), _) => return Some("mm".to_owned()),
-            (-6, Some("m"), false) => return Some("µm".to_owned()),
+            (-6, Some("m"), _) => return Some(if ascii { "um" } else { "µm" }.to_owned()),
             (power, _, true) => format!("1e{power}"),
             (power, _, false) => format!("10{}", superscript(power)),
         };
@@ -108,17 +108,6 @@ impl Scale {
             None => power,
         })
     }
-}
-
-/// Lengths for running text, which share a unit: in metres where all can be read there, else in mm or µm.
-pub fn lengths(values: &[f64], unit: Option<&str>, ascii: bool) -> (Vec<String>, Option<String>) {
-    let is_small = |value: &f64| figures(*value, DIGITS).is_some_and(|(_, exponent)| exponent < -4);
-    let (times, unit) = match largest(values.iter().copied()) {
-        _ if unit != Some("m") || ascii || !values.iter().any(is_small) => (1.0, unit),
-        most if most < 1e-3 => (1e6, Some("µm")),
-        _ => (1e3, Some("mm")),
-    };
-    (values.iter().map(|value| short(times * value)).collect(), unit.map(str::to_owned))
 }
 
 /// Scales of values of several quantities, one for each unit.
@@ -193,21 +182,6 @@ mod tests {
     }
 
     #[test]
-    fn lengths_in_a_sentence_share_a_unit_that_can_be_read() {
-        let said = |values: &[f64], unit: &str, ascii: bool| {
-            let (numbers, unit) = lengths(values, Some(unit), ascii);
-            format!("{} {}", numbers.join(", "), unit.unwrap_or_default())
-        };
-        assert_eq!(said(&[0.005, 0.0005], "m", false), "0.005, 0.0005 m");
-        assert_eq!(said(&[33.097e-6], "m", false), "33.097 µm");
-        assert_eq!(said(&[0.005, 33.097e-6], "m", false), "5, 0.033097 mm");
-        assert_eq!(said(&[2.5e-5, 0.0], "m", false), "25, 0 µm");
-        assert_eq!(said(&[33.097e-6], "m", true), "33.097e-6 m");
-        assert_eq!(said(&[33.097e-6], "mm", false), "33.097e-6 mm");
-        assert_eq!(said(&[3.5e-10], "m", false), "0.00035 µm");
-    }
-
-    #[test]
     fn what_is_given_keeps_its_digits() {
         let scale = Scale::given([214.285_714_285_7, 0.05, 1e-3]);
         assert_eq!([214.285_714_285_7, 0.05, 1e-3].map(|v| scale.number(v)), ["214.2857143", "0.05", "0.001"]);
@@ -218,7 +192,8 @@ mod tests {
     #[test]
     fn a_power_stands_with_its_unit() {
         let unit = |value: f64, unit: Option<&str>, ascii: bool| Scale::of([value]).unit(unit, ascii);
-        assert_eq!(unit(1e-6, Some("m"), true).as_deref(), Some("1e-6 m"));
+        assert_eq!(unit(1e-6, Some("m"), true).as_deref(), Some("um"));
+        assert_eq!(unit(1e-6, Some("kN"), true).as_deref(), Some("1e-6 kN"));
         assert_eq!(unit(1e-3, Some("m"), true).as_deref(), Some("mm"));
         assert_eq!(unit(1e6, Some("kN"), false).as_deref(), Some("10⁶ kN"));
         assert_eq!(unit(1e-6, None, false).as_deref(), Some("10⁻⁶"));

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use unicode_width::UnicodeWidthStr;
 
-use super::scale::{Scale, lengths};
+use super::scale::Scale;
 use super::style::{Role, Style};
 use super::{force_unit, length_unit};
 use crate::answer::attempt::Attempt;
@@ -14,7 +14,7 @@ use crate::model::parameter::ParameterValues;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::units::Units;
 use crate::model::uses::Redone;
-use crate::text::number::{in_full, residual, short, with_unit};
+use crate::text::number::{in_full, measured_alike, residual, short, with_unit};
 
 /// `5 pivots`, `1 pivot`, `no pivot`; `warm start, 2 changes` where the last answer was followed.
 pub fn pivot_count(answer: &Answer) -> String {
@@ -100,7 +100,7 @@ pub fn line(answer: &Answer, previous: Option<&Answer>, units: &Units, style: &S
         OutcomeKind::Trivial | OutcomeKind::Normal if !answer.pairs.is_empty() => {
             let count = counted(answer, previous);
             let states = state_counts(&answer.pairs);
-            let (extreme, before) = extreme(answer, previous, units, style.ascii);
+            let (extreme, before) = extreme(answer, previous, units);
             let with_before = match before {
                 Some(before) => format!("{extreme} (was {before})"),
                 None => extreme.clone(),
@@ -193,7 +193,7 @@ fn headline(answer: &Answer) -> (String, Role) {
 }
 
 /// The largest slip, else the largest opening, and what it was before if that was something else.
-fn extreme(answer: &Answer, previous: Option<&Answer>, units: &Units, ascii: bool) -> (String, Option<String>) {
+fn extreme(answer: &Answer, previous: Option<&Answer>, units: &Units) -> (String, Option<String>) {
     let unit = length_unit(units);
     let previous = previous.filter(|previous| previous.is_answer());
     let slip_before = previous.map(|p| max_slip(&p.pairs).map_or(0.0, |(slip, _)| slip));
@@ -204,14 +204,14 @@ fn extreme(answer: &Answer, previous: Option<&Answer>, units: &Units, ascii: boo
         ("max opening", opening, &pair.id, before)
     } else {
         let before = slip_before.filter(|slip| *slip > 0.0).map(|slip| {
-            let (numbers, said) = lengths(&[slip], unit.as_deref(), ascii);
-            with_unit(&numbers.concat(), said.as_deref().filter(|_| said != unit))
+            let (numbers, said) = measured_alike(&[slip], unit.as_deref());
+            with_unit(&numbers.concat(), said.filter(|_| said != unit.as_deref()))
         });
         return ("no slip".into(), before);
     };
     let values: Vec<f64> = [value].into_iter().chain(before).collect();
-    let (numbers, unit) = lengths(&values, unit.as_deref(), ascii);
-    let text = format!("{what} {} at {at}", with_unit(&numbers[0], unit.as_deref()));
+    let (numbers, unit) = measured_alike(&values, unit.as_deref());
+    let text = format!("{what} {} at {at}", with_unit(&numbers[0], unit));
     let before = numbers.get(1).filter(|before| **before != numbers[0]).cloned();
     (text, before)
 }

@@ -238,7 +238,8 @@ fn ascii(c: char) -> &'static str {
         '°' => "deg",
         'α' => "alpha",
         'φ' => "phi",
-        'μ' | 'µ' => "mu",
+        'μ' => "mu",
+        'µ' => "u", // of µm; the letter above is the Greek one
         'λ' => "lambda",
         'Δ' => "d",
         '√' => "sqrt ",

@@ -8,7 +8,7 @@ use ratatui::text::Line;
 
 use crate::model::scenario::Source;
 use crate::session::results::PairState;
-use crate::text::number::{short, with_unit};
+use crate::text::number::{measured, short};
 use crate::tui::app::State;
 use crate::tui::kept::The;
 use crate::tui::listing::{GUTTER, Listing, around};
@@ -127,8 +127,8 @@ pub fn about(state: &State) -> Option<String> {
     let pair = state.shown.pairs().get(state.pair)?;
     let units = &state.shown.scenario.units;
     let (force, length) = (force_unit(units), length_unit(units));
-    let f = |value: f64| with_unit(&short(value), force.as_deref());
-    let d = |value: f64| with_unit(&short(value), length.as_deref());
+    let f = |value: f64| measured(value, force.as_deref());
+    let d = |value: f64| measured(value, length.as_deref());
     let mut text = format!("{} {}", pair.id, state_words(pair));
     if let Some(change) = state.shown.change(state.pair) {
         text.push_str(&format!(" (was {})", change.from));

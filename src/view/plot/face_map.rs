@@ -11,7 +11,7 @@ use crate::answer::rounding::denoised;
 use crate::model::structure::Structure;
 use crate::model::units::Units;
 use crate::model::vector::{dot, way};
-use crate::text::number::{heading, short, with_unit};
+use crate::text::number::{heading, measured, short};
 use crate::view::style::{Role, Style};
 
 /// Nodes this far out of the plane, of the size of the face, are on another one.
@@ -156,11 +156,9 @@ impl FaceMap {
     pub fn notes(&self) -> Vec<String> {
         let most = self.spots.iter().max_by(|a, b| a.value.total_cmp(&b.value));
         let largest = match most.filter(|_| self.largest > 0.0) {
-            Some(most) => format!(
-                "0 … 9: tenths of the largest, {} at {}",
-                with_unit(&short(self.largest), self.unit.as_deref()),
-                most.id
-            ),
+            Some(most) => {
+                format!("0 … 9: tenths of the largest, {} at {}", measured(self.largest, self.unit.as_deref()), most.id)
+            }
             None => "0 everywhere".to_owned(),
         };
         let vector = |v: [f64; 3]| format!("({}, {}, {})", short(tidy(v[0])), short(tidy(v[1])), short(tidy(v[2])));

@@ -8,7 +8,7 @@ use crate::model::groups::Groups;
 use crate::model::structure::{ElementLoad, Load, LoadCase, Structure};
 use crate::model::units::Units;
 use crate::model::vector::{distance, length as size};
-use crate::text::number::{short, with_unit};
+use crate::text::number::measured;
 use crate::view::projection::Projection;
 use crate::view::{force_unit, line_load_unit};
 
@@ -237,7 +237,7 @@ impl Loads {
                 LoadKind::Line => (or("line load"), most.max(self.largest_line()), &line),
                 LoadKind::Weight => (or("weight"), most, &force),
             };
-            Some((kind, format!("{name} up to {}", with_unit(&short(most), unit.as_deref()))))
+            Some((kind, format!("{name} up to {}", measured(most, unit.as_deref()))))
         };
         LoadKind::ALL.into_iter().filter_map(words).collect()
     }

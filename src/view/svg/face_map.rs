@@ -3,7 +3,7 @@
 use super::structure::{Place, pair};
 use super::{Anchor, BLACK, Caption, Drawing, GREY, MARGIN, SMALL, Sign, chart};
 use crate::answer::record::State;
-use crate::text::number::{short, with_unit};
+use crate::text::number::measured;
 use crate::view::plot::chart::Chart;
 use crate::view::plot::face_map::{FaceMap, LEVELS};
 
@@ -48,7 +48,7 @@ fn cells(drawing: &mut Drawing, map: &FaceMap) {
         let share = if map.largest > 0.0 { spot.value / map.largest } else { 0.0 };
         let corner = |sx: f64, sy: f64| place.at((spot.at.0 + 0.5 * sx * dx, spot.at.1 + 0.5 * sy * dy));
         let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-        let value = with_unit(&short(spot.value), map.unit.as_deref());
+        let value = measured(spot.value, map.unit.as_deref());
         drawing.put(&format!(
             "<polygon points=\"{}\" fill=\"{}\" stroke=\"#ffffff\" stroke-width=\"0.5\"><title>{}</title></polygon>",
             super::points(&corners),
@@ -88,7 +88,7 @@ fn bar(drawing: &mut Drawing, map: &FaceMap) {
         ));
     }
     let end = MARGIN + LEVELS as f64 * step;
-    let largest = with_unit(&short(map.largest), map.unit.as_deref());
+    let largest = measured(map.largest, map.unit.as_deref());
     drawing.text((MARGIN, y + 26.0), "0", SMALL, Anchor::Start, BLACK, "");
     drawing.text((end, y + 26.0), &largest, SMALL, Anchor::Middle, BLACK, "");
     let signs =

@@ -3,7 +3,7 @@
 use super::{Anchor, BLACK, COLOURS, Caption, Drawing, FACE, FAINT, GREY, MARGIN, SMALL, Sign, WIDTH, points};
 use crate::answer::record::State;
 use crate::model::units::Units;
-use crate::text::number::{short, with_unit};
+use crate::text::number::measured;
 use crate::view::plot::lines::Face;
 use crate::view::plot::loads::{Arrow, LoadKind};
 use crate::view::plot::scene::Scene;
@@ -86,7 +86,7 @@ impl Place {
             let beyond = (tip.0 + 9.0 * x / size, tip.1 - 9.0 * y / size + 4.0);
             drawing.text(beyond, name, SMALL, Anchor::Middle, BLACK, "");
         }
-        let label = format!("{} along each axis", with_unit(&short(length), unit));
+        let label = format!("{} along each axis", measured(length, unit));
         drawing.text((origin.0 - 64.0, drawing.y), &label, SMALL, Anchor::End, BLACK, "");
     }
 
@@ -101,7 +101,7 @@ impl Place {
         for x in [x, WIDTH - MARGIN] {
             drawing.line((x, y - 4.0), (x, y + 4.0), BLACK, 1.5, "");
         }
-        let label = with_unit(&short(length), unit);
+        let label = measured(length, unit);
         drawing.text((x - 8.0, y + 4.0), &label, SMALL, Anchor::End, BLACK, "");
     }
 }
