@@ -10,6 +10,7 @@ use ratatui::text::Line;
 
 use crate::model::parameter::Parameter;
 use crate::model::quantity::Quantity;
+use crate::model::structure::Dimension;
 use crate::session::commands::screen::Tour;
 use crate::session::results::PairState;
 use crate::session::{AllAnswers, Gauge};
@@ -336,6 +337,9 @@ impl State {
         let members = self.shown.answer().and_then(|answer| answer.members.as_ref());
         if members.is_some_and(|members| !members.is_empty()) {
             plots.extend([Plot::Moment, Plot::Shear, Plot::Axial]);
+            if self.shown.structure().is_some_and(|structure| structure.dimension == Dimension::Space) {
+                plots.extend([Plot::MomentY, Plot::ShearZ, Plot::Torsion]);
+            }
         }
         if self.shown.stage.is_some() && plots.len() > 1 {
             // the pivots of a stage's rate problems are not a way to its end

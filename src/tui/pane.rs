@@ -122,6 +122,12 @@ pub enum Plot {
     Shear,
     /// N along the bars.
     Axial,
+    /// V_z along bars in space.
+    ShearZ,
+    /// T along bars in space.
+    Torsion,
+    /// M_y along bars in space.
+    MomentY,
     /// Direction of the ray.
     Ray,
 }
@@ -138,6 +144,9 @@ impl Plot {
             Plot::Moment => "moment",
             Plot::Shear => "shear",
             Plot::Axial => "axial",
+            Plot::ShearZ => "shear V_z",
+            Plot::Torsion => "torque",
+            Plot::MomentY => "moment M_y",
             Plot::Ray => "ray mode",
         }
     }
@@ -153,6 +162,9 @@ impl Plot {
             Plot::Moment => "plot moment",
             Plot::Shear => "plot shear",
             Plot::Axial => "plot axial",
+            Plot::ShearZ => "plot Vz",
+            Plot::Torsion => "plot T",
+            Plot::MomentY => "plot My",
             Plot::Ray => return None,
         })
     }

@@ -215,6 +215,15 @@ impl Internal {
         matches!(self, Internal::Moment | Internal::MomentZ | Internal::MomentY)
     }
 
+    /// What the same picture shows of bars there: M and Q of the plane are M_z and V_y in space.
+    pub fn drawn_in(self, dimension: structure::Dimension) -> Internal {
+        match (self, dimension) {
+            (Internal::Moment, structure::Dimension::Space) => Internal::MomentZ,
+            (Internal::Shear, structure::Dimension::Space) => Internal::ShearY,
+            _ => self,
+        }
+    }
+
     /// Whether bars of the plane, or of space, have it by this name.
     pub fn is_of(self, dimension: structure::Dimension) -> bool {
         Internal::of(dimension == structure::Dimension::Space).contains(&self)

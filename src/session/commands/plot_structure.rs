@@ -200,21 +200,32 @@ impl Session {
         Ok(Shape { title, structure, displacements: Some(displacements), factors: &[], viewpoint, pairs: None })
     }
 
-    /// The forces of the bars and the bars that are meant: the one named, or all.
-    pub(in crate::session) fn bars(&self, bar: Option<&str>) -> Result<(&[MemberForces], Vec<&str>), CommandError> {
+    /// What the picture of a force shows here, the forces of the bars, and the bars that are meant: the one named, or all.
+    pub(in crate::session) fn bars(
+        &self,
+        force: Internal,
+        bar: Option<&str>,
+    ) -> Result<(Internal, &[MemberForces], Vec<&str>), CommandError> {
         let answer = self.need_quantities()?;
         let structure = self.structure().ok_or_else(not_a_structure)?;
+        let force = force.drawn_in(structure.dimension);
+        if !force.is_of(structure.dimension) {
+            return Err(CommandError::Refused(format!(
+                "{} is a force of bars in space; those of bars in the plane are axial, shear and moment",
+                force.symbol()
+            )));
+        }
         let Some(members) = &answer.members else {
             return Err(CommandError::Refused("no member forces: there is no answer".into()));
         };
         let names = || structure.bars.iter().map(|bar| bar.id.as_str());
         match bar {
             Some(bar) => match names().find(|name| *name == bar) {
-                Some(name) => Ok((members, vec![name])),
+                Some(name) => Ok((force, members, vec![name])),
                 None => Err(CommandError::Refused(no_such("bar", bar, names()))),
             },
             None if structure.bars.is_empty() => Err(CommandError::Refused("the structure has no bars".into())),
-            None => Ok((members, names().collect())),
+            None => Ok((force, members, names().collect())),
         }
     }
 
@@ -225,7 +236,7 @@ impl Session {
         height: Option<usize>,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let (members, bars) = self.bars(bar)?;
+        let (force, members, bars) = self.bars(force, bar)?;
         let &[bar] = &bars[..] else {
             let shown = Shape { displacements: None, factors: &[], ..self.shape()? };
             let curves: Vec<Curve<'_>> = bars.iter().map(|bar| Curve::of(members, bar, force)).collect();

@@ -39,14 +39,31 @@ pub enum Picture {
     Structure,
     /// The collapse mode of a ray
     Mode,
-    /// Bending moment along a bar, or along all bars where they lie
+    /// Bending moment along a bar, or along all bars where they lie; in space M_z
     Moment,
-    /// Shear force likewise
+    /// Shear force likewise; in space V_y
     Shear,
     /// Normal force likewise
     Axial,
+    /// Shear force V_z of bars in space
+    #[value(name = "Vz")]
+    ShearZ,
+    /// Torque of bars in space
+    #[value(name = "T")]
+    Torsion,
+    /// Bending moment M_y of bars in space
+    #[value(name = "My")]
+    MomentY,
     /// Slip or force over the load, friction or history that was followed last
     Path,
+}
+
+impl Picture {
+    /// Whether it shows a force along bars.
+    fn is_of_bars(self) -> bool {
+        use Picture::{Axial, Moment, MomentY, Shear, ShearZ, Torsion};
+        matches!(self, Moment | Shear | Axial | ShearZ | Torsion | MomentY)
+    }
 }
 
 /// Draw a picture of the present state, or of the last path
@@ -69,7 +86,7 @@ pub struct Plot {
     /// Lines of the picture
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(5..=500))]
     height: Option<u16>,
-    /// Bar, for moment, shear and axial (all of them without one); quantity, pairs and `over CASE`, for path;
+    /// Bar, for moment, shear, axial, Vz, T and My (all of them without one); quantity, pairs and `over CASE`, for path;
     /// `loads on|off` and `scale FACTOR|auto`, for structure and mode
     #[arg(value_name = "OF")]
     of: Vec<String>,
@@ -93,7 +110,7 @@ fn words(asked: &Asked<'_>) -> Vec<Candidate> {
     match (asked.option, asked.given) {
         (Some("at"), _) => Candidate::plain(["first", "last", "first,last"]),
         (None, [path, of @ ..]) if path == "path" => of_path(asked, of),
-        (None, [bars, ..]) if ["moment", "shear", "axial"].contains(&bars.as_str()) => {
+        (None, [bars, ..]) if Picture::from_str(bars, false).is_ok_and(Picture::is_of_bars) => {
             Candidate::plain(&asked.names.bars)
         }
         (None, [shape, .., last]) if ["structure", "mode"].contains(&shape.as_str()) && last == "loads" => {
@@ -133,14 +150,14 @@ impl Session {
         }
         let height = height.map(usize::from);
         let most = match picture {
-            Picture::Moment | Picture::Shear | Picture::Axial => 1,
+            _ if picture.is_of_bars() => 1,
             Picture::Path | Picture::Structure | Picture::Mode => usize::MAX,
             _ => 0,
         };
         let bar = of.first().map(String::as_str);
         let result = if let Some(word) = of.get(most) {
             Err(CommandError::Refused(format!(
-                "plot: `{word}` makes no sense here; a bar belongs to moment, shear and axial, pairs to path, `loads` and `scale` \
+                "plot: `{word}` makes no sense here; a bar belongs to moment, shear, axial, Vz, T and My, pairs to path, `loads` and `scale` \
                  to structure and mode"
             )))
         } else {
@@ -160,6 +177,9 @@ impl Session {
                 Picture::Moment => self.plot_diagram(Internal::Moment, bar, height, io),
                 Picture::Shear => self.plot_diagram(Internal::Shear, bar, height, io),
                 Picture::Axial => self.plot_diagram(Internal::Axial, bar, height, io),
+                Picture::ShearZ => self.plot_diagram(Internal::ShearZ, bar, height, io),
+                Picture::Torsion => self.plot_diagram(Internal::Torsion, bar, height, io),
+                Picture::MomentY => self.plot_diagram(Internal::MomentY, bar, height, io),
             }
         };
         io.style = saved;

@@ -74,6 +74,9 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
         Plot::Moment => return along_bars(state, Internal::Moment, area),
         Plot::Shear => return along_bars(state, Internal::Shear, area),
         Plot::Axial => return along_bars(state, Internal::Axial, area),
+        Plot::ShearZ => return along_bars(state, Internal::ShearZ, area),
+        Plot::Torsion => return along_bars(state, Internal::Torsion, area),
+        Plot::MomentY => return along_bars(state, Internal::MomentY, area),
     };
     let now_label = match shown.position {
         Some(step) => title(step),
@@ -155,6 +158,7 @@ fn along_bars(state: &State, force: Internal, area: Rect) -> Vec<Line<'static>> 
     else {
         return Vec::new();
     };
+    let force = force.drawn_in(structure.dimension);
     let title = if shown.position.is_some() { "at the end" } else { "" };
     fitting(area, |height| {
         let picture = Picture {

@@ -216,17 +216,15 @@ impl Scene {
         }
     }
 
-    /// Adds a force along every bar of the structure: N and Q on its +y side where they are positive, M on the side in
-    /// tension. The largest ordinate is an eighth of the model.
+    /// Adds a force along every bar of the structure, positive values on the side of [`BarLine`]. The largest ordinate is an eighth of the model.
     pub fn with_diagrams(mut self, structure: &Structure, members: &[MemberForces], force: Internal) -> Scene {
         let all: Vec<(&Bar, Series)> =
             structure.bars.iter().filter_map(|bar| Some((bar, diagram::series(members, &bar.id, force)?))).collect();
         let largest = largest(all.iter().flat_map(|(_, series)| series.points.iter().map(|(_, value)| *value)));
         let Some([[left, right], [bottom, top]]) = self.bounds.filter(|_| largest > 0.0) else { return self };
-        let side = if force == Internal::Moment { -1.0 } else { 1.0 };
-        let scale = side * ORDINATE * (right - left).max(top - bottom) / largest;
+        let scale = ORDINATE * (right - left).max(top - bottom) / largest;
         for (bar, series) in all {
-            let line = ordinates(&BarLine::of(structure, bar), &series.points, scale);
+            let line = ordinates(&BarLine::of(structure, bar, force), &series.points, scale);
             let line: Vec<(f64, f64)> = line.into_iter().map(|at| self.projection.flat(at)).collect();
             for (x, y) in &line {
                 let [[left, right], [bottom, top]] = self.bounds.get_or_insert([[*x; 2], [*y; 2]]);

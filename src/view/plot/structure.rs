@@ -93,7 +93,7 @@ pub fn write_with_diagrams(
 ) -> io::Result<()> {
     let (name, unit) = diagram::name(force, units);
     let name = heading(name, unit.as_deref());
-    let side = if force == Internal::Moment { ", on the tension side" } else { "" };
+    let side = if force.is_bending() { ", on the tension side" } else { "" };
     let head = if picture.title.is_empty() { String::new() } else { format!("{} · ", picture.title) };
     let title = format!("{head}{name}{side}");
     let picture = Picture { title: &title, displacements: None, ..*picture };

@@ -22,7 +22,7 @@ pub struct Bars<'a> {
     pub members: &'a [MemberForces],
     /// Ids of the bars.
     pub bars: &'a [&'a str],
-    /// N, Q or M.
+    /// What is drawn of them.
     pub force: Internal,
 }
 
@@ -44,14 +44,12 @@ pub fn figure(scene: &Scene, of: &Bars<'_>, unit: Option<&str>, caption: &Captio
         .filter_map(|bar| Some((bar, series(members, &bar.id, force)?.points)))
         .collect();
     let most = largest(drawn.iter().flat_map(|(_, points)| points.iter().map(|(_, value)| *value)));
-    // positive moments on the −y side, where their tension is
-    let side = if force == Internal::Moment { -1.0 } else { 1.0 };
     let mut labels: Vec<Label> = Vec::new();
     for (bar, points) in &drawn {
-        let axis = BarLine::of(structure, bar);
+        let axis = BarLine::of(structure, bar, force);
         let ordinate = |(at, across): ([f64; 3], [f64; 3]), value: f64| {
             let ((x, y), (nx, ny)) = (place.at(scene.projection.flat(at)), scene.projection.flat(across));
-            let height = if most > 0.0 { side * denoised(value, most) / most * ORDINATE } else { 0.0 };
+            let height = if most > 0.0 { denoised(value, most) / most * ORDINATE } else { 0.0 };
             ((x, y), (x + height * nx, y - height * ny))
         };
         let feet = axis.feet(points).into_iter();

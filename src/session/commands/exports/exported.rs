@@ -98,12 +98,21 @@ pub enum Exported {
     Traction,
     /// Picture: p over the pivots
     P,
-    /// Picture: bending moments
+    /// Picture: bending moments, in space M_z
     Moment,
-    /// Picture: shear forces
+    /// Picture: shear forces, in space V_y
     Shear,
     /// Picture: normal forces
     Axial,
+    /// Picture: shear forces V_z of bars in space
+    #[value(name = "Vz")]
+    ShearZ,
+    /// Picture: torques of bars in space
+    #[value(name = "T")]
+    Torsion,
+    /// Picture: bending moments M_y of bars in space
+    #[value(name = "My")]
+    MomentY,
     /// The LCP for other solvers: a scenario of its own (.json) or Matrix Market (.mtx)
     Lcp,
     /// What proofs are about: the contact system or the bare LCP at the present values, a scenario of its own
@@ -129,6 +138,7 @@ impl Exported {
             | Exported::Pressure
             | Exported::Traction => &["svg"],
             Exported::P | Exported::Moment | Exported::Shear | Exported::Axial => &["svg"],
+            Exported::ShearZ | Exported::Torsion | Exported::MomentY => &["svg"],
             _ => &["csv", "json"],
         }
     }
@@ -142,6 +152,7 @@ impl Exported {
             Exported::Path if ending == "svg" => usize::MAX,
             Exported::Sensitivity | Exported::Critical | Exported::Limit | Exported::Check | Exported::Report => 1,
             Exported::Moment | Exported::Shear | Exported::Axial => 1,
+            Exported::ShearZ | Exported::Torsion | Exported::MomentY => 1,
             _ => 0,
         }
     }

@@ -91,7 +91,7 @@ fn words(asked: &Asked<'_>) -> Vec<Candidate> {
         "limit" => asked.varied(),
         "find" => find::words(&Asked { given: of, ..*asked }),
         "check" => Candidate::plain(["exact"]),
-        "moment" | "shear" | "axial" => Candidate::plain(&asked.names.bars),
+        "moment" | "shear" | "axial" | "Vz" | "T" | "My" => Candidate::plain(&asked.names.bars),
         "slip" | "force" | "gap" | "pressure" | "traction" => Candidate::plain(["first", "last"]),
         "path" => of_path(asked, of),
         _ => Vec::new(),

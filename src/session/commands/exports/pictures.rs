@@ -74,6 +74,9 @@ impl Session {
             Exported::Moment => self.forces_figure(Internal::Moment, of),
             Exported::Shear => self.forces_figure(Internal::Shear, of),
             Exported::Axial => self.forces_figure(Internal::Axial, of),
+            Exported::ShearZ => self.forces_figure(Internal::ShearZ, of),
+            Exported::Torsion => self.forces_figure(Internal::Torsion, of),
+            Exported::MomentY => self.forces_figure(Internal::MomentY, of),
             // the only picture that is left
             _ => self.shape_figure(&self.shape()?),
         }
@@ -91,7 +94,7 @@ impl Session {
     /// The forces of one bar over its length, or of all bars on the structure.
     fn forces_figure(&self, force: Internal, of: &[String]) -> Result<String, CommandError> {
         let units = &self.now.scenario.units;
-        let (members, bars) = self.bars(of.first().map(String::as_str))?;
+        let (force, members, bars) = self.bars(force, of.first().map(String::as_str))?;
         let notes = bars.iter().filter_map(|bar| {
             let found = Diagram::of(members, bar)?;
             Some(format!("{bar}: {}", extremes(&found, force, units)))
@@ -106,7 +109,11 @@ impl Session {
         (shape.displacements, shape.pairs) = (None, None);
         let (name, unit) = diagram::name(force, units);
         let name = heading(name, unit.as_deref());
-        let side = if force == Internal::Moment { ", on the tension side" } else { ", > 0 on the +y side of each bar" };
+        let side = match force {
+            _ if force.is_bending() => ", on the tension side",
+            Internal::ShearZ => ", > 0 on the +z side of each bar",
+            _ => ", > 0 on the +y side of each bar",
+        };
         let caption = self.caption(&format!("{}: {name}{side}", self.short_name()));
         let scene = Scene::new(&shape.picture(0), None);
         let bars = svg::forces::Bars { structure: shape.structure, members, bars: &bars, force };

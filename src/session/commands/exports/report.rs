@@ -7,7 +7,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use serde_json::Value;
 
 use super::exported::Exported;
-use crate::answer::record::{Answer, MemberForces};
+use crate::answer::record::{Answer, EndForces, MemberForces};
 use crate::export::atomic;
 use crate::model::scenario::Source;
 use crate::model::units::Units;
@@ -163,12 +163,11 @@ impl Session {
         let pairs = self.quantity_pairs();
         let slips = pairs.iter().any(|pair| pair.z_t != 0.0);
         let rubs = pairs.iter().any(|pair| pair.x_t != 0.0 || pair.bound != 0.0);
-        let bends = answer
-            .members
-            .iter()
-            .flatten()
-            .any(|member| [member.start, member.end].iter().any(|end| end.m != 0.0 || end.q != 0.0));
-        let axial = answer.members.iter().flatten().any(|member| member.start.n != 0.0 || member.end.n != 0.0);
+        let ends: Vec<EndForces> =
+            answer.members.iter().flatten().flat_map(|member| [member.start, member.end]).collect();
+        let any = |symbols: &[&str]| {
+            ends.iter().flat_map(EndForces::named).any(|(name, force)| symbols.contains(&name) && force != 0.0)
+        };
         let structure = self.structure().is_some();
         let wanted = [
             (Exported::Structure, "structure", structure),
@@ -177,8 +176,10 @@ impl Session {
             (Exported::Force, "force", rubs),
             (Exported::Pressure, "pressure", !pairs.is_empty()),
             (Exported::Traction, "traction", self.traction_states(&[]).is_ok()),
-            (Exported::Moment, "moment", bends),
-            (Exported::Axial, "axial", axial),
+            (Exported::Moment, "moment", any(&["M", "Q", "Mz", "Vy"])),
+            (Exported::MomentY, "moment M_y", any(&["My", "Vz"])),
+            (Exported::Torsion, "torque", any(&["T"])),
+            (Exported::Axial, "axial", any(&["N"])),
             (Exported::Path, "path", self.need_path().is_ok() && self.stale_path().is_none()),
         ];
         if wanted.iter().any(|(.., is_there)| *is_there) {
