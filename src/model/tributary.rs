@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use super::structure::Structure;
+use super::vector::{length, way};
 
 /// For each pair of the structure the integral of its node's shape function along the edge or bar, or over the face, it
 /// lies on: half of the sides beside it, on quadratic sides 1/6, 4/6, 1/6 of their length. `None` for a pair of single nodes, and on an edge
@@ -60,7 +61,7 @@ fn may_be_closed(structure: &Structure, nodes: &[usize]) -> bool {
 fn shares(structure: &Structure, nodes: &[usize], middles: &HashSet<usize>) -> Vec<f64> {
     let distance = |a: usize, b: usize| {
         let [p, q] = [a, b].map(|at| structure.nodes[nodes[at]].position);
-        (q[0] - p[0]).hypot(q[1] - p[1])
+        length(way(p, q))
     };
     let mut shares = vec![0.0; nodes.len()];
     let mut at = 0;

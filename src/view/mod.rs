@@ -65,6 +65,11 @@ pub fn line_load_unit(units: &Units) -> Option<String> {
     }
 }
 
+/// Unit of a force per area, `kN/m²`, if the author named both its parts.
+pub fn area_load_unit(units: &Units) -> Option<String> {
+    line_load_unit(units).map(|unit| format!("{unit}²"))
+}
+
 /// Unit of a moment, `kN·m`, if the author named both its parts.
 pub fn moment_unit(units: &Units) -> Option<String> {
     match (&units.force, &units.length) {

@@ -9,6 +9,7 @@ mod help;
 #[path = "../common/lines.rs"]
 mod lines;
 mod numbers;
+mod pictures_in_space;
 mod plausibility;
 mod program;
 mod pty;

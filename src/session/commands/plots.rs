@@ -31,7 +31,7 @@ pub enum Picture {
     Gap,
     /// Compressive force x_n
     Pressure,
-    /// x_n and x_τ of edges per length
+    /// x_n and x_τ of edges per length, of faces per area
     Traction,
     /// p over the pivots
     P,

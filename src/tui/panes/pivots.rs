@@ -154,6 +154,11 @@ fn row(pivot: &PivotRecord, p: &str, columns: &Columns, look: Look) -> Line<'sta
     if what.width() > columns.words {
         what = what.replace(&format!(" {arrow} "), " ").replace(" in, ", "/").replace(" out", "");
     }
+    if let Some(turned) = pivot.turned.as_ref().filter(|_| what.width() > columns.words) {
+        // what it turned to is said whole, and of its name the beginning and the end
+        let room = columns.words.saturating_sub(turned.to.width() + 1);
+        what = format!("{} {}", cut_in_the_middle(&turned.pair, room, look.report(1).ellipsis()), turned.to);
+    }
     let mut spans = vec![Span::raw(format!(
         "{}  {} {}",
         pad_left(&pivot.step.to_string(), columns.step),
@@ -169,6 +174,17 @@ fn row(pivot: &PivotRecord, p: &str, columns: &Columns, look: Look) -> Line<'sta
         spans.push(Span::styled(pad_left(&pivot.ties.len().to_string(), columns.tie), look.role(Role::Warning)));
     }
     Line::from(spans)
+}
+
+/// At most `room` characters of a name: its beginning and its end.
+fn cut_in_the_middle(name: &str, room: usize, ellipsis: &str) -> String {
+    let letters: Vec<char> = name.chars().collect();
+    if letters.len() <= room {
+        return name.to_owned();
+    }
+    let kept = room.saturating_sub(ellipsis.width());
+    let (head, tail) = (kept / 3, kept - kept / 3); // indices stand at the end
+    letters[..head].iter().collect::<String>() + ellipsis + &letters[letters.len() - tail..].iter().collect::<String>()
 }
 
 /// The sentence of what is shown: the pivot, the ray, or that there was none.
@@ -211,4 +227,16 @@ pub fn sentence(state: &State) -> String {
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cut_in_the_middle;
+
+    #[test]
+    fn a_long_name_keeps_its_ends() {
+        assert_eq!(cut_in_the_middle("c12", 3, "…"), "c12");
+        assert_eq!(cut_in_the_middle("abutment-left[12]", 9, "…"), "ab…ft[12]");
+        assert_eq!(cut_in_the_middle("abutment-left[12]", 8, "~"), "ab~t[12]");
+    }
 }

@@ -61,3 +61,24 @@ fn axes(structure: &Structure, element: &Element) -> Option<BarAxes> {
         ElementKind::Membrane { .. } | ElementKind::Solid { .. } => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bar along x has y upwards and z along −y: what has tension on its −z side is drawn there, which is +y.
+    #[test]
+    fn forces_stand_on_their_side_of_a_bar_in_space() {
+        let axes = BarAxes::in_space([[0.0; 3], [4.0, 0.0, 0.0]], None).unwrap();
+        let side = |force: Internal| BarLine { elements: vec![(0.0, [0.0; 3], axes)], force }.at(1.0, false);
+        for (force, expected) in [
+            (Internal::ShearY, [0.0, 0.0, 1.0]),
+            (Internal::MomentZ, [0.0, 0.0, -1.0]),
+            (Internal::ShearZ, [0.0, -1.0, 0.0]),
+            (Internal::MomentY, [0.0, 1.0, 0.0]),
+            (Internal::Torsion, [0.0, 0.0, 1.0]),
+        ] {
+            assert_eq!(side(force), ([1.0, 0.0, 0.0], expected), "{force:?}");
+        }
+    }
+}

@@ -11,7 +11,8 @@ use crate::answer::rounding::denoised;
 use crate::model::structure::Structure;
 use crate::model::units::Units;
 use crate::model::vector::{dot, way};
-use crate::text::number::{heading, measured, short};
+use crate::text::number::{measured, short};
+use crate::view::area_load_unit;
 use crate::view::style::{Role, Style};
 
 /// Nodes this far out of the plane, of the size of the face, are on another one.
@@ -80,6 +81,28 @@ pub fn faces(
     (maps, rest)
 }
 
+/// What the pairs of each face carry per area, normal and tangential; `areas` are those of the pairs.
+pub fn tractions(
+    structure: &Structure,
+    states: &[PairState],
+    areas: &[Option<f64>],
+    units: &Units,
+) -> (Vec<FaceMap>, Vec<PairState>) {
+    let per_area = |(state, area): (&PairState, &Option<f64>)| {
+        let area = area.unwrap_or(1.0); // of pairs on no face, which are not drawn from these
+        PairState { x_n: state.x_n / area, x_t: state.x_t / area, ..state.clone() }
+    };
+    let spread: Vec<PairState> = states.iter().zip(areas).map(per_area).collect();
+    let (mut maps, rest) = faces(structure, &spread, Quantity::Pressure, units);
+    maps.extend(faces(structure, &spread, Quantity::Force, units).0);
+    for map in &mut maps {
+        map.title = format!("{}, per area", map.title);
+        map.unit = area_load_unit(units);
+    }
+    let is_left = |state: &&PairState| rest.iter().any(|rest| rest.id == state.id);
+    (maps, states.iter().filter(is_left).cloned().collect())
+}
+
 impl FaceMap {
     /// Of these pairs; `None` where they are on no plane, or on a line.
     fn of(
@@ -129,7 +152,8 @@ impl FaceMap {
             None => &spots[0].id,
         };
         let unit = quantity.unit(units);
-        let title = format!("{} over {name}", heading(quantity.name(true), unit.as_deref()));
+        // the unit stands with the largest value, mm or µm of lengths
+        let title = format!("{} over {name}", quantity.name(true));
         let spacing = (least_step(at.iter().map(|at| at.0), size), least_step(at.iter().map(|at| at.1), size));
         Some(FaceMap { title, unit, spots, largest, spacing, tangents: [t1, t2], quantity })
     }
@@ -300,7 +324,7 @@ mod tests {
         let (maps, rest) = faces(&structure, &states, Quantity::Slip, &units());
         let [map] = &maps[..] else { panic!("{maps:?}") };
         assert!(rest.is_empty());
-        assert_eq!(map.title, "Slip |z_τ| [m] over g");
+        assert_eq!(map.title, "Slip |z_τ| over g");
         assert_eq!((map.spacing, map.bounds()), ((1.0, 1.0), [[-0.5, 3.5], [-0.5, 2.5]]));
         // z_t = x mm at (x, y)
         assert!((map.largest - 3e-3).abs() < 1e-15);

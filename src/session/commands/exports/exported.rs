@@ -94,7 +94,7 @@ pub enum Exported {
     Gap,
     /// Picture: compressive force
     Pressure,
-    /// Forces of edge contacts per length
+    /// Picture: forces of edges per length, of faces per area
     Traction,
     /// Picture: p over the pivots
     P,

@@ -55,8 +55,12 @@ impl Session {
             Exported::Gap => zone(Quantity::Gap),
             Exported::Pressure => zone(Quantity::Pressure),
             Exported::Traction => {
-                let OnEdges { states, lengths } = self.traction_states(of)?;
-                Ok(self.chart_figure(&zone::traction(&borrowed(&states), &lengths, units), ""))
+                let OnEdges { maps, states, lengths } = self.traction_states(of)?;
+                let chart = (!lengths.is_empty()).then(|| zone::traction(&borrowed(&states), &lengths, units));
+                Ok(match chart {
+                    Some(chart) if maps.is_empty() => self.chart_figure(&chart, ""),
+                    chart => svg::face_map::figure(&maps, chart.as_ref(), &self.about()),
+                })
             }
             Exported::P => Ok(self.chart_figure(&trace::drawing(self.some_pivots()?, self.position, units), "")),
             Exported::Path => {
