@@ -91,6 +91,21 @@ impl JointState {
         }
     }
 
+    /// No forces at all, on Coulomb's cone.
+    pub fn unloaded_on_cone(z: DVector<f64>) -> JointState {
+        let none = DVector::zeros(z.len());
+        JointState {
+            force: none.clone(),
+            terms: none.clone(),
+            z_terms: none,
+            z,
+            left: Vec::new(),
+            p: 0.0,
+            free: Vec::new(),
+            on_cone: true,
+        }
+    }
+
     /// With what the compliance of a file leaves over, where joints are in force form.
     fn against_file(mut self, problem: &ContactProblem) -> JointState {
         let system = &*problem.system;
@@ -169,6 +184,12 @@ pub fn pair_states(problem: &ContactProblem, contact: &ContactLcp, state: &Joint
             }
         })
         .collect()
+}
+
+/// The pairs of an answer in space.
+pub fn pairs_in_space(problem: &ContactProblem, state: &JointState) -> Vec<PairState> {
+    let none = Cover { force: (0.0, 0.0), distance: 0.0 };
+    (0..problem.system.pair_count()).map(|i| pair_in_space(problem, &none, state, i)).collect()
 }
 
 /// What the covering adds to a pair at p > 0.

@@ -42,6 +42,7 @@ fn word((state, held): (State, Option<State>)) -> String {
     match held {
         None => state.word().to_owned(),
         Some(State::Stick) => "open (held)".to_owned(),
+        Some(State::Slip) => "open (slip)".to_owned(),
         Some(State::SlipPlus) => "open (slip +)".to_owned(),
         Some(_) => "open (slip -)".to_owned(),
     }
@@ -92,6 +93,7 @@ pub fn sentence(changes: &[Change]) -> String {
             let closes = if from.starts_with("open") { format!("{} and ", s("close")) } else { String::new() };
             let verb = match to {
                 "stick" => format!("{closes}{}", s("stick")),
+                "slip" => format!("{closes}{}", s("slip")),
                 "slip+" => format!("{closes}{} +", s("slip")),
                 "slip-" => format!("{closes}{} -", s("slip")),
                 "closed" => s("close"),

@@ -125,6 +125,7 @@ pub(crate) struct Cold {
     pub(crate) basis: Option<Basis>,
     pub(crate) point: Point,
     pub(crate) outcome: Outcome,
+    pub(crate) pivots: usize,
 }
 
 impl Cold {
@@ -157,7 +158,7 @@ pub(crate) fn cold(problem: &ContactProblem, watch: &dyn Watch) -> Result<Cold, 
         Outcome::Trivial | Outcome::Normal { marginal: false } => Some(run.pivots.basis()),
         _ => None,
     };
-    Ok(Cold { contact, basis, point: run.point, outcome: run.outcome })
+    Ok(Cold { contact, basis, point: run.point, outcome: run.outcome, pivots: run.pivots.count() })
 }
 
 /// The final scheme of a solved state; `None` where it is no answer, or one that only just is (marginal).

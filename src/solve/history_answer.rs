@@ -7,7 +7,6 @@ use super::prepared::{Geometry, Prepared};
 use crate::answer::check::check_contact;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{Answer, PairState, Size};
-use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::rows;
 use crate::lcp::outcome::{Outcome, Point, Run};
@@ -29,7 +28,7 @@ impl Prepared {
         let system = &*problem.system;
         let run =
             Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point: Point::default() };
-        let mut size = Size { pairs: system.pairs.len(), lcp: rows(system, Polygon::PLANE).len(), ..Size::default() };
+        let mut size = Size { pairs: system.pairs.len(), lcp: rows(system, problem.polygon).len(), ..Size::default() };
         if let Geometry::Structure { main, .. } = &*self.geometry {
             (size.unknowns, size.free) = (Some(main.size().all), Some(main.size().free));
         }

@@ -20,5 +20,6 @@ mod rules_in_space;
 mod sample;
 mod session;
 mod stages;
+mod stages_in_space;
 mod sweep;
 mod sweep_following;

@@ -4,7 +4,6 @@ use serde_json::json;
 use stickslip::answer::record::OutcomeKind;
 use stickslip::model::rules::Rules;
 use stickslip::path::grid::{Axis, Grid};
-use stickslip::path::stages::follow;
 use stickslip::path::sweep::{Format, Sweep};
 use stickslip::watch::Quiet;
 
@@ -19,8 +18,7 @@ fn foot() -> Case {
             "pairs": ["c1"], "tangents": 2, "stiffness": vec![vec![0.0; 3]; 3], "friction": [0.3],
             "loads": {
                 "weight": { "vector": [2, 0, 0] },
-                "push": { "factor": "F", "vector": [0, -0.5_f64.sqrt(), -0.5_f64.sqrt()] } } },
-        "stages": [{ "weight": 1 }, { "weight": 1, "push": 1 }] }))
+                "push": { "factor": "F", "vector": [0, -0.5_f64.sqrt(), -0.5_f64.sqrt()] } } } }))
 }
 
 fn square() -> Rules {
@@ -68,13 +66,4 @@ fn sweeps_under_other_facets_or_another_cone_are_other_sweeps() {
     ];
     assert_eq!(hashes[0], hash(Rules::default()));
     assert!(hashes[0] != hashes[1] && hashes[0] != hashes[2] && hashes[1] != hashes[2], "{hashes:?}");
-}
-
-/// A history in space is refused, and it is said what goes.
-#[test]
-fn a_history_in_space_is_refused_with_the_way_out() {
-    let case = foot();
-    let values = case.scenario.parameter_values();
-    let refusal = follow(case.prepared.case(&case.scenario, &values)).unwrap_err().to_string();
-    assert!(refusal.contains("works in the plane only so far") && refusal.contains("--at-once"), "{refusal}");
 }

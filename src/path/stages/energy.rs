@@ -1,6 +1,7 @@
-//! Dissipation, and for structures the balance of energy. Both are exact: forces and displacements are affine between
-//! two moments.
+//! Dissipation, and for structures the balance of energy. Both are exact where forces and displacements are affine between
+//! two moments; on a curved way they take its integrals.
 
+use super::integrals;
 use super::record::{Energy, History, Moment, StageResult};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
@@ -8,16 +9,16 @@ use crate::fem::{Displacements, Loaded};
 use crate::solve::Prepared;
 use crate::solve::prepared::Geometry;
 
-/// D = −Σ ½ (x_τa + x_τb) Δz_τ of a stage.
+/// D of a stage.
 pub(super) fn dissipated(system: &ContactSystem, moments: &[Moment]) -> f64 {
-    let mut sum = 0.0;
-    for ends in moments.windows(2) {
-        let [a, b] = [&ends[0].state, &ends[1].state];
-        for joint in system.pairs.iter().flat_map(|pair| pair.tangential.clone()) {
-            sum -= 0.5 * (a.force[joint] + b.force[joint]) * (b.z[joint] - a.z[joint]);
+    let between = |ends: &[Moment]| match &ends[1].curve {
+        Some(curve) => curve.dissipated,
+        None => {
+            let [a, b] = [&ends[0].state, &ends[1].state];
+            integrals::dissipated([&a.z, &b.z], [&a.force, &b.force], system)
         }
-    }
-    sum
+    };
+    moments.windows(2).map(between).sum()
 }
 
 fn loaded<'a>(u: &'a Displacements, moment: &'a Moment) -> Loaded<'a> {
@@ -39,7 +40,23 @@ pub(super) fn balance(prepared: &Prepared, problem: &ContactProblem, history: &m
             let stored = main.strain_energy(&u);
             largest = largest.max(stored.abs());
             if let Some((last, old, old_stored)) = &before {
-                let step = main.work_between(&loaded(old, last), &loaded(&u, moment));
+                let straight = main.work_between(&loaded(old, last), &loaded(&u, moment));
+                let step = match &moment.curve {
+                    None => straight,
+                    Some(curve) => {
+                        // Half of the way to the mean of u and on adds half of what the curve adds.
+                        let factors = last.factors.iter().zip(&moment.factors).map(|(a, b)| 0.5 * (a + b));
+                        let factors: Vec<f64> = factors.collect();
+                        let bent = problem.dislocation(&curve.z);
+                        let at = problem.clone().with_factors(&factors);
+                        let lambda = &at.system.stiffness * &bent + &at.load;
+                        let mean =
+                            Loaded { u: &main.displacements(&factors, &bent), lambda: &lambda, factors: &factors };
+                        let by_mean = main.work_between(&loaded(old, last), &mean)
+                            + main.work_between(&mean, &loaded(&u, moment));
+                        2.0 * by_mean - straight
+                    }
+                };
                 energy.work += step;
                 energy.stored += stored - old_stored;
                 work += step;

@@ -6,6 +6,7 @@ use nalgebra::DVector;
 use super::Begin;
 use super::course::Course;
 use super::energy;
+use super::integrals::Integrals;
 use super::record::{History, HistoryEnd, Moment, StageResult};
 use super::standing::Laws;
 use crate::answer::pairs::JointState;
@@ -59,6 +60,16 @@ pub(super) trait Follower<'a> {
 
     /// Displacements and forces of the joints there.
     fn state(&self) -> JointState;
+
+    /// What belongs to the way there from the moment before, where that is no straight line.
+    fn integrals(&self) -> Option<Integrals> {
+        None
+    }
+
+    /// What it may be wrong by there, as a share of the largest displacement, where the way is no straight line.
+    fn error(&self) -> Option<f64> {
+        None
+    }
 
     /// The pairs there.
     fn states(&self) -> Vec<PairState>;
@@ -122,6 +133,7 @@ pub(super) trait Follower<'a> {
             jump,
             way: place.way.clone(),
             state: self.state(),
+            curve: self.integrals(),
         }
     }
 
@@ -153,7 +165,7 @@ pub(super) trait Follower<'a> {
         tell_changes(&mut way.moments, || system.pairs.iter().map(|pair| pair.id.as_str()));
         let problem = self.problem_at(factors, gaps);
         let pairs = self.states();
-        let slip = pairs.iter().zip(before).map(|(pair, before)| pair.z_t - before.z_t).collect();
+        let slip = pairs.iter().zip(before).map(|(pair, before)| slip_since(pair, before)).collect();
         let mut end = prepared.history_answer(&problem, &self.state(), &way.last_slip, pairs);
         if let Some((_, collapse)) = limit
             && end.is_answer()
@@ -168,8 +180,17 @@ pub(super) trait Follower<'a> {
             pivots: way.pivots,
             slip,
             energy: None,
+            error: self.error(),
             end,
         }
+    }
+}
+
+/// z_τ of a pair after another state: in space the length of a vector.
+fn slip_since(pair: &PairState, before: &PairState) -> f64 {
+    match (pair.space, before.space) {
+        (Some(now), Some(then)) => (now.z_t[0] - then.z_t[0]).hypot(now.z_t[1] - then.z_t[1]),
+        _ => pair.z_t - before.z_t,
     }
 }
 

@@ -13,9 +13,11 @@ mod energy;
 mod event;
 mod follower;
 mod force_form;
+mod integrals;
 mod rate_problem;
 mod record;
 mod released;
+mod space;
 mod standing;
 mod walk;
 
@@ -28,7 +30,7 @@ use std::time::Instant;
 use standing::Laws;
 use walk::Walk;
 
-use super::start::{PathError, plane_system};
+use super::start::PathError;
 use crate::solve::Case;
 use crate::solve::problem::{contact_problem, factors};
 
@@ -78,16 +80,6 @@ pub fn follow_factors(case: Case<'_>, begin: &Begin, targets: &[Vec<f64>]) -> Re
     follow_until(case, begin, targets, &mut |_| false)
 }
 
-/// What goes in space.
-fn with_way_out(refusal: PathError) -> PathError {
-    match refusal {
-        PathError::Missing(why) => PathError::Missing(format!(
-            "{why}; `solve` takes all its loads at once (`stickslip solve --at-once` in the shell)"
-        )),
-        other => other,
-    }
-}
-
 /// The same, up to the stage after which those that were followed are `enough`.
 ///
 /// # Errors
@@ -98,13 +90,14 @@ pub(super) fn follow_until(
     targets: &[Vec<f64>],
     enough: &mut dyn FnMut(&[StageResult]) -> bool,
 ) -> Result<History, PathError> {
-    let Case { prepared, values, watch, .. } = case;
-    let system = plane_system(prepared, "stages").map_err(with_way_out)?;
+    let Case { prepared, values, rules, watch, .. } = case;
+    let system = prepared.system().ok_or(PathError::Plain("stages"))?;
     let none = vec![0.0; prepared.cases.len()];
     let problem = contact_problem(system, &none, values);
     let start = Instant::now();
     let laws = Laws { problem: &problem };
     let mut history = match system.force_form {
+        _ if system.is_in_space() => space::follow(prepared, laws, (begin, rules), (targets, enough), watch)?,
         Some(_) => force_form::follow(prepared, laws, begin, (targets, enough), watch)?,
         None => Walk::start(prepared, laws, begin, targets, watch)?.follow((targets, enough))?,
     };

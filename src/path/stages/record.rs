@@ -1,7 +1,8 @@
 //! A followed history as data.
 
+use super::integrals::Integrals;
 use crate::answer::pairs::JointState;
-use crate::answer::record::{Answer, PairState, Ray, State, Verdict};
+use crate::answer::record::{Answer, InSpace, PairState, Ray, State, Verdict};
 use crate::path::change::Change;
 
 /// The structure at one moment of the history.
@@ -23,6 +24,15 @@ pub struct Moment {
     pub(super) way: Vec<(State, Option<State>)>,
     /// Total z and λ over the joints.
     pub(in crate::path) state: JointState,
+    /// What belongs to the way here and not to its ends, where it is no straight line; z is the mean one.
+    pub(super) curve: Option<Integrals>,
+}
+
+impl Moment {
+    /// Whether it is a point of a curved way, at which nothing else happens.
+    pub fn is_passed(&self) -> bool {
+        self.curve.is_some() && self.changes.is_empty() && !self.jump && self.t > 0.0 && self.t < 1.0
+    }
 }
 
 /// A stage that was followed.
@@ -38,6 +48,9 @@ pub struct StageResult {
     pub dissipated: f64,
     /// Work of the loads and change of the strain energy; structures only.
     pub energy: Option<Energy>,
+    /// What the ends of its legs may be wrong by, as a share of the largest displacement, where directions of slip turn
+    /// on the way: the sum of the last corrections. `None` where every way is straight.
+    pub error: Option<f64>,
     /// The state at its end as an answer, where a pair on the limit at which it slipped last is shown as slipping; a ray, with the state at which it was met, where the history ended in a limit.
     /// The last stage's has the attempts and pivots of the last rate problem, whose forces are rates per whole stage.
     pub end: Answer,
@@ -123,7 +136,13 @@ impl History {
         let mix = |a: f64, b: f64| if s == 1.0 { b } else { a + s * (b - a) };
         let mixed = ends[0].pairs.iter().zip(&ends[1].pairs).zip(&ends[1].way).map(|((a, b), &(state, held))| {
             let (state, held) = if s == 1.0 { (b.state, b.held) } else { (state, held) };
+            let space = a.space.zip(b.space).map(|(a, b)| InSpace {
+                x_t: [0, 1].map(|t| mix(a.x_t[t], b.x_t[t])),
+                z_t: [0, 1].map(|t| mix(a.z_t[t], b.z_t[t])),
+                ..b
+            });
             PairState {
+                space,
                 state,
                 held,
                 x_n: mix(a.x_n, b.x_n),

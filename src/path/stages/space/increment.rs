@@ -1,0 +1,145 @@
+//! One step of a history on Coulomb's cone: the answer of eq. (8) in increments from the slips where the step began.
+
+use std::cell::Cell;
+
+use nalgebra::DVector;
+
+use crate::answer::pairs::JointState;
+use crate::answer::record::State;
+use crate::contact::cone::{ConeFailure, ConeState};
+use crate::contact::on_cone::OnCone;
+use crate::contact::polygon::Polygon;
+use crate::contact::problem::ContactProblem;
+use crate::contact::written::ContactLcp;
+use crate::lcp::outcome::RayDirection;
+use crate::path::start::{PathError, cold, state_of};
+use crate::watch::Watch;
+
+/// Finest polygon from which Newton's method is started.
+const FINEST: u16 = 64;
+
+/// Where a step ends.
+#[derive(Clone)]
+pub(super) struct Step {
+    /// Total z over the joints.
+    pub(super) z: DVector<f64>,
+    /// The same with the slips counted from where the step began: what the laws of contact tie to the forces.
+    pub(super) increments: JointState,
+    /// What every pair does in it.
+    pub(super) scheme: Scheme,
+}
+
+/// What every pair does, and what holds it where it is open.
+pub(super) type Scheme = Vec<(State, Option<State>)>;
+
+/// The ray that the run on the finest polygon ended in, with its LCP and p.
+pub(super) type PolygonRay = Option<Box<(ContactLcp, RayDirection, f64)>>;
+
+/// Who takes steps.
+pub(super) struct Stepper<'a> {
+    /// Fewest facets of the polygon from whose answer Newton's method is started where no step before leads on.
+    pub(super) facets: u16,
+    pub(super) watch: &'a dyn Watch,
+    /// Pivots made on polygons.
+    pub(super) pivots: Cell<usize>,
+    /// Answers found.
+    pub(super) steps: Cell<usize>,
+}
+
+impl Stepper<'_> {
+    /// The problem for slips that count from those of `from`, total z over the joints.
+    pub(super) fn from_slips(&self, mut problem: ContactProblem, from: &DVector<f64>) -> ContactProblem {
+        let shift = slips_of(&problem, from);
+        let (load, sizes) = {
+            let stiffness = &problem.system.stiffness;
+            let mut sizes = DVector::zeros(shift.len());
+            for (joint, slip) in shift.iter().enumerate().filter(|(_, slip)| **slip != 0.0) {
+                sizes.zip_apply(&stiffness.column(joint), |size: &mut f64, entry| *size += (entry * slip).abs());
+            }
+            (stiffness * &shift, sizes)
+        };
+        problem.add_load(1.0, &load, &sizes);
+        problem
+    }
+
+    /// The answer of a problem in increments from the slips of `from` that Newton's method finds near `guess`, total z;
+    /// `None` where it finds none.
+    pub(super) fn near(
+        &self,
+        problem: ContactProblem,
+        from: &DVector<f64>,
+        guess: &DVector<f64>,
+    ) -> Result<Option<Step>, PathError> {
+        let problem = self.from_slips(problem, from);
+        let start = guess - slips_of(&problem, from);
+        self.newton(&problem, from, &start)
+    }
+
+    /// The same from the answers of polygons, finer and finer; where there is none, what their runs ended in.
+    pub(super) fn anywhere(
+        &self,
+        problem: ContactProblem,
+        from: &DVector<f64>,
+    ) -> Result<Result<Step, PolygonRay>, PathError> {
+        let mut problem = self.from_slips(problem, from);
+        let mut facets = self.facets;
+        loop {
+            problem = problem.with_polygon(Polygon::regular(facets, 0.0));
+            let found = cold(&problem, self.watch)?;
+            self.pivots.set(self.pivots.get() + found.pivots);
+            if found.basis.is_some() {
+                let start = state_of(&problem, &found.contact, &found.point).z;
+                if let Some(step) = self.newton(&problem, from, &start)? {
+                    return Ok(Ok(step));
+                }
+            }
+            let ray = found.ray().cloned().map(|ray| {
+                let p = found.point.p * found.contact.force_unit;
+                Box::new((found.contact.clone(), ray, p))
+            });
+            if facets >= FINEST {
+                return Ok(Err(ray));
+            }
+            facets *= 2;
+        }
+    }
+
+    fn newton(
+        &self,
+        problem: &ContactProblem,
+        from: &DVector<f64>,
+        start: &DVector<f64>,
+    ) -> Result<Option<Step>, PathError> {
+        let answer = match OnCone::new(problem).answer(start, self.watch) {
+            Ok(answer) => answer,
+            Err(ConeFailure::Stopped) => return Err(PathError::Interrupted),
+            Err(ConeFailure::NotConverged { .. } | ConeFailure::NotFinite) => return Ok(None),
+        };
+        self.steps.set(self.steps.get() + 1);
+        let scheme = scheme_of(problem, &answer.states, &answer.z);
+        let increments = JointState::on_cone(problem, answer);
+        Ok(Some(Step { z: &increments.z + slips_of(problem, from), increments, scheme }))
+    }
+}
+
+/// z_τ of total displacements, 0 in the normal joints.
+fn slips_of(problem: &ContactProblem, z: &DVector<f64>) -> DVector<f64> {
+    let pairs = problem.system.pair_count();
+    DVector::from_fn(z.len(), |joint, _| if joint < pairs { 0.0 } else { z[joint] })
+}
+
+fn scheme_of(problem: &ContactProblem, states: &[ConeState], z: &DVector<f64>) -> Scheme {
+    let pairs = problem.system.pairs.iter().zip(&problem.laws).zip(states);
+    pairs
+        .map(|((pair, law), state)| match state {
+            ConeState::Open if pair.rubs() && law.fixed_bound() > 0.0 => {
+                let slips = pair.tangential.clone().any(|joint| z[joint] != 0.0);
+                (State::Open, Some(if slips { State::Slip } else { State::Stick }))
+            }
+            ConeState::Open => (State::Open, None),
+            ConeState::Closed => (State::Closed, None),
+            ConeState::Stick => (State::Stick, None),
+            ConeState::Slip => (State::Slip, None),
+        })
+        .collect()
+}

@@ -1,0 +1,193 @@
+//! A leg of a history: a piece of the way in which no pair changes what it does.
+//!
+//! Slips turn on the way, so that steps ([`super::increment`]) are right to first order only: friction stands against the
+//! direction at their end. The same leg is taken in one step, in two, in three …; what the ends tend to as the steps get
+//! shorter is found by extrapolation (Aitken and Neville), whose last correction is the error that is left. Every end has
+//! the schemes of the leg, so there is no kink in what is extrapolated. Where nothing turns one step is exact, and two say so.
+
+use nalgebra::DVector;
+
+use super::increment::{Scheme, Step, Stepper};
+use crate::contact::problem::ContactProblem;
+use crate::contact::system::ContactSystem;
+use crate::path::stages::course::Course;
+use crate::path::stages::integrals::Integrals;
+use crate::path::start::PathError;
+
+/// A joint is as good as without stiffness where the root of its R_ii is this share of the largest.
+const RIGID: f64 = 1e-5;
+/// The error of a leg may be this share of the largest displacement.
+pub(super) const TOLERANCE: f64 = 1e-10;
+/// The leg is taken in so many steps at most.
+const ROWS: usize = 8;
+/// A leg is given up where its corrections stay that large from so many steps on: a shorter one is cheaper.
+const HOPELESS: (usize, f64) = (4, 1e-4);
+
+/// Where a leg begins.
+pub(super) struct Begin<'a> {
+    pub(super) t: f64,
+    /// Total z.
+    pub(super) z: &'a DVector<f64>,
+    /// λ.
+    pub(super) force: &'a DVector<f64>,
+    /// ż, as far as it is known: where the first step is looked for.
+    pub(super) rate: &'a DVector<f64>,
+    /// What every pair does on the leg.
+    pub(super) scheme: &'a Scheme,
+}
+
+/// A leg that was taken.
+pub(super) struct Leg {
+    /// Total z at its end, extrapolated.
+    pub(super) z: DVector<f64>,
+    pub(super) way: Integrals,
+    /// Steps at its end give this z rate.
+    pub(super) rate: DVector<f64>,
+    /// Largest last correction of a z, as a share of the size.
+    pub(super) error: f64,
+    /// In how many steps it was taken at last.
+    pub(super) rows: usize,
+}
+
+/// What became of a leg.
+pub(super) enum Taken {
+    Whole(Leg),
+    /// A pair does something else within it.
+    Changes,
+    /// There is no answer near, or the corrections stay too large.
+    Shorter,
+}
+
+/// What legs are measured by: displacements of all joints are compared by the root of their stiffness, R_ii.
+pub(super) struct Measure {
+    scale: DVector<f64>,
+    /// Joints without stiffness of their own, whose forces are no measure of any displacement.
+    rigid: Vec<bool>,
+    /// The largest scaled displacement so far, those included that forces would cause where they are held.
+    size: f64,
+}
+
+impl Measure {
+    pub(super) fn new(system: &ContactSystem) -> Measure {
+        let roots = system.stiffness.diagonal().map(|entry| entry.max(0.0).sqrt());
+        let largest = roots.amax();
+        let rigid: Vec<bool> = roots.iter().map(|root| *root <= RIGID * largest).collect();
+        let or = if largest > 0.0 { largest } else { 1.0 };
+        let scale = DVector::from_fn(roots.len(), |joint, _| if rigid[joint] { or } else { roots[joint] });
+        Measure { scale, rigid, size: 0.0 }
+    }
+
+    /// The largest entry of scaled displacements.
+    pub(super) fn of(&self, z: &DVector<f64>) -> f64 {
+        z.iter().zip(&self.scale).fold(0.0, |a: f64, (z, scale)| a.max((z * scale).abs()))
+    }
+
+    /// The size with another state in it.
+    pub(super) fn size_with(&self, z: &DVector<f64>, force: &DVector<f64>) -> f64 {
+        let felt = (0..force.len()).filter(|&joint| !self.rigid[joint]);
+        felt.fold(self.size.max(self.of(z)), |size, joint| size.max((force[joint] / self.scale[joint]).abs()))
+    }
+
+    pub(super) fn meet(&mut self, z: &DVector<f64>, force: &DVector<f64>) {
+        self.size = self.size_with(z, force);
+    }
+
+    /// A difference of displacements as a share of the size.
+    pub(super) fn share(&self, difference: &DVector<f64>) -> f64 {
+        let size = self.of(difference);
+        if size == 0.0 { 0.0 } else { size / self.size }
+    }
+}
+
+/// A row of the tableau: z, ∫ z dt and the dissipation, one after the other.
+type Row = Vec<DVector<f64>>;
+
+/// Takes a leg of length `h` on the course; `problem` is the problem at a place of the course.
+pub(super) fn taken(
+    stepper: &Stepper<'_>,
+    problem: &dyn Fn(f64) -> ContactProblem,
+    begin: &Begin<'_>,
+    h: f64,
+    measure: &Measure,
+) -> Result<Taken, PathError> {
+    let mut before: Row = Vec::new();
+    for n in 1..=ROWS {
+        let Some((end, way, last)) = in_steps(stepper, problem, begin, (h, n))? else { return Ok(Taken::Shorter) };
+        let Some(last) = last else { return Ok(Taken::Changes) };
+        let k = end.len();
+        let mut row: Row =
+            vec![DVector::from_iterator(2 * k + 1, end.iter().chain(way.z.iter()).copied().chain([way.dissipated]))];
+        for (column, old) in before.iter().enumerate() {
+            // From n − column − 1 steps to n of them.
+            let ratio = n as f64 / (n - column - 1) as f64;
+            let now = &row[column];
+            row.push(now + (now - old) / (ratio - 1.0));
+        }
+        if n > 1 {
+            let correction = (&row[n - 1] - &row[n - 2]).rows(0, k).into_owned();
+            let error = measure.share(&correction);
+            if error <= TOLERANCE {
+                let best = &row[n - 1];
+                let way = Integrals { z: best.rows(k, k).into_owned(), dissipated: best[2 * k] };
+                let rate = (&end - &last) * (n as f64 / h);
+                return Ok(Taken::Whole(Leg { z: best.rows(0, k).into_owned(), way, rate, error, rows: n }));
+            }
+            if error.is_nan() || (n >= HOPELESS.0 && error > HOPELESS.1) {
+                break;
+            }
+        }
+        before = row;
+    }
+    Ok(Taken::Shorter)
+}
+
+/// The end of a leg in n steps, its integrals, and z before the last step; without the last where a pair does something else,
+/// `None` where a step has no answer.
+#[expect(clippy::type_complexity, reason = "what one step after the other leaves, taken apart at once")]
+fn in_steps(
+    stepper: &Stepper<'_>,
+    problem: &dyn Fn(f64) -> ContactProblem,
+    begin: &Begin<'_>,
+    (h, n): (f64, usize),
+) -> Result<Option<(DVector<f64>, Integrals, Option<DVector<f64>>)>, PathError> {
+    let step = h / n as f64;
+    let (mut z, mut force) = (begin.z.clone(), begin.force.clone());
+    let (mut last, mut rate) = (z.clone(), begin.rate.clone());
+    let mut way = Integrals { z: DVector::zeros(z.len()), dissipated: 0.0 };
+    for j in 1..=n {
+        let at = problem(begin.t + h * (j as f64 / n as f64));
+        let Some(next) = stepper.near(at.clone(), &z, &(&z + &rate * step))? else { return Ok(None) };
+        if next.scheme != *begin.scheme {
+            return Ok(Some((z, way, None)));
+        }
+        let Step { z: to, increments, .. } = next;
+        way = way.plus(&Integrals::straight(step, [&z, &to], [&force, &increments.force], &at.system));
+        rate = (&to - &z) / step;
+        last = std::mem::replace(&mut z, to);
+        force = increments.force;
+    }
+    Ok(Some((z, way, Some(last))))
+}
+
+/// The place on the way from `begin` up to which single steps keep the scheme, between 0 and h, to `digits` of a stage.
+pub(super) fn change_within(
+    stepper: &Stepper<'_>,
+    problem: &dyn Fn(f64) -> ContactProblem,
+    begin: &Begin<'_>,
+    h: f64,
+    digits: f64,
+) -> Result<f64, PathError> {
+    let (mut low, mut high) = (0.0, h);
+    while high - low > digits {
+        let middle = 0.5 * (low + high);
+        let guess = begin.z + begin.rate * middle;
+        let found = stepper.near(problem(begin.t + middle), begin.z, &guess)?;
+        if found.is_some_and(|found| found.scheme == *begin.scheme) { low = middle } else { high = middle }
+    }
+    Ok(low)
+}
+
+/// A course as the problem at each of its places.
+pub(super) fn along<'c>(problem: &'c ContactProblem, course: &'c Course) -> impl Fn(f64) -> ContactProblem + 'c {
+    move |t| problem.clone().with_gaps(&course.gaps_at(t)).with_factors(&course.factors_at(t))
+}
