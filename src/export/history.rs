@@ -39,6 +39,9 @@ fn stage(stage: &StageResult, cases: &[String]) -> Value {
     }
     put("dissipated", json::value(&stage.dissipated));
     put("balance", json::value(&stage.energy.map(|energy| energy.residual)));
+    if stage.estimated_error.is_some() {
+        put("estimated_error", json::value(&stage.estimated_error));
+    }
     if !stage.end.notes.is_empty() {
         put("notes", json::value(&stage.end.notes));
     }

@@ -1,10 +1,11 @@
 //! What changes at a breakpoint, in words.
 
 use crate::answer::record::{PairState, State};
+use crate::contact::polygon::{angle, degrees};
 use crate::text::words::list;
 
 /// A pair that changes its state at a breakpoint.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Change {
     /// Id of the pair.
     pub pair: String,
@@ -12,6 +13,9 @@ pub struct Change {
     pub from: String,
     /// State after.
     pub to: String,
+    /// Where a pair in space slips to from here on: degrees from t1 towards t2.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub direction: Option<f64>,
 }
 
 /// A place of a path over a load or over friction at which the scheme changes.
@@ -63,35 +67,44 @@ pub fn between<'a>(
     ids.zip(before.iter().zip(after))
         .filter_map(|(id, (before, after))| {
             let (from, to) = (word(*before), word(*after));
-            (from != to).then(|| Change { pair: id.to_owned(), from, to })
+            (from != to).then(|| Change { pair: id.to_owned(), from, to, direction: None })
         })
         .collect()
 }
 
+/// Adds where to pairs slip that begin to in space; `after` are the pairs from here on.
+pub fn with_directions(changes: &mut [Change], after: &[PairState]) {
+    for change in changes.iter_mut().filter(|change| change.to == State::Slip.word()) {
+        // Friction stands against the slip.
+        let space = after.iter().find(|pair| pair.id == change.pair).and_then(|pair| pair.space);
+        change.direction = space.map(|space| angle(space.x_t.map(|friction| -friction)));
+    }
+}
+
 /// `pair c5 slips +`, `pairs c1 and c2 open`; several kinds joined by `; `.
 pub fn sentence(changes: &[Change]) -> String {
-    let mut kinds: Vec<(&str, &str)> = Vec::new();
+    let kind_of = |change: &Change| (change.from.clone(), change.to.clone(), change.direction.map(degrees));
+    let mut kinds: Vec<(String, String, Option<String>)> = Vec::new();
     for change in changes {
-        let kind = (change.from.as_str(), change.to.as_str());
+        let kind = kind_of(change);
         if !kinds.contains(&kind) {
             kinds.push(kind);
         }
     }
     let parts: Vec<String> = kinds
         .into_iter()
-        .map(|(from, to)| {
-            let pairs: Vec<String> = changes
-                .iter()
-                .filter(|change| change.from == from && change.to == to)
-                .map(|change| change.pair.clone())
-                .collect();
+        .map(|kind| {
+            let same = changes.iter().filter(|change| kind_of(change) == kind);
+            let pairs: Vec<String> = same.map(|change| change.pair.clone()).collect();
+            let (from, to, direction) = kind;
             let one = pairs.len() == 1;
             let subject = if one { format!("pair {}", pairs[0]) } else { format!("pairs {}", list(&pairs)) };
             let s = |verb: &str| {
                 if one { format!("{verb}s") } else { verb.to_owned() }
             };
             let closes = if from.starts_with("open") { format!("{} and ", s("close")) } else { String::new() };
-            let verb = match to {
+            let towards = direction.map_or(String::new(), |direction| format!(" towards {direction}"));
+            let verb = match to.as_str() {
                 "stick" => format!("{closes}{}", s("stick")),
                 "slip" => format!("{closes}{}", s("slip")),
                 "slip+" => format!("{closes}{} +", s("slip")),
@@ -104,7 +117,7 @@ pub fn sentence(changes: &[Change]) -> String {
                 }
                 other => format!("{} ({})", s("open"), other.trim_start_matches("open ").trim_matches(['(', ')'])),
             };
-            format!("{subject} {verb}")
+            format!("{subject} {verb}{towards}")
         })
         .collect();
     parts.join("; ")
@@ -115,7 +128,7 @@ mod tests {
     use super::{Change, sentence};
 
     fn change(pair: &str, from: &str, to: &str) -> Change {
-        Change { pair: pair.into(), from: from.into(), to: to.into() }
+        Change { pair: pair.into(), from: from.into(), to: to.into(), direction: None }
     }
 
     #[test]
@@ -123,5 +136,8 @@ mod tests {
         let changes = [change("c1", "stick", "slip+"), change("c2", "stick", "slip+"), change("c3", "open", "stick")];
         assert_eq!(sentence(&changes), "pairs c1 and c2 slip +; pair c3 closes and sticks");
         assert_eq!(sentence(&changes[..1]), "pair c1 slips +");
+        let towards = |pair, direction| Change { direction: Some(direction), ..change(pair, "stick", "slip") };
+        let changes = [towards("c1", 36.87), towards("c2", 36.87), towards("c3", -90.0)];
+        assert_eq!(sentence(&changes), "pairs c1 and c2 slip towards 36.9°; pair c3 slips towards -90°");
     }
 }

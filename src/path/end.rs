@@ -1,5 +1,6 @@
 //! Why a path ends.
 
+use crate::answer::record::Ray;
 use crate::lcp::outcome::RayDirection;
 use crate::text::words::short;
 
@@ -12,6 +13,8 @@ pub enum PathEnd {
     Turning,
     /// At the limit load.
     Limit(RayDirection),
+    /// At a value beyond which a collapse on Coulomb's cone is certified.
+    Collapse(Box<Ray>),
     /// Nowhere: the last scheme holds for every larger load.
     Unbounded,
     /// Back at the start, through turning points of the load.
@@ -32,6 +35,12 @@ impl PathEnd {
             ),
             PathEnd::Limit(_) => {
                 format!("limit load: beyond {name} = {at} nothing resists the motion in which the path ends")
+            }
+            PathEnd::Collapse(ray) => {
+                format!(
+                    "limit: beyond {name} = {at} there is no answer, which is certified by a collapse: {}",
+                    ray.mode
+                )
             }
             PathEnd::Unbounded => format!("beyond {name} = {at} nothing changes any more, however large the load"),
             PathEnd::Returned => format!("the path came back to {name} = {at} through turning points"),

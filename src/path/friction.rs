@@ -142,27 +142,9 @@ struct Onward {
 /// # Errors
 /// See [`PathError`].
 pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, to: f64) -> Result<FrictionPath, PathError> {
-    let Case { scenario, prepared, values, .. } = case;
+    let Case { prepared, values, .. } = case;
     let system = plane_system(prepared, "trace")?;
-    let mixed = |why: String| PathError::Mixed { name: name.to_owned(), why };
-    if let Some(why) = place_beside_laws(scenario, name) {
-        return Err(mixed(why));
-    }
-    let along = values.along(name);
-    let moves = |number: &Number| along.dependence(number) != Dependence::Constant;
-    let others = |law: &Law| law.numbers().into_iter().any(|(key, number)| key != "friction" && moves(number));
-    if system.pairs.iter().any(|pair| others(&pair.law)) || prepared.cases.iter().any(|(_, factor)| moves(factor)) {
-        return Err(mixed(
-            "it is a friction coefficient and something else as well; give them parameters of their own".to_owned(),
-        ));
-    }
-    let mut at_target = values.clone();
-    at_target.insert(name.to_owned(), to);
-    if let Some(refusal) = scenario.refusal(name, to).or_else(|| scenario.law_refusal(&at_target)) {
-        return Err(PathError::Target(refusal));
-    }
-    // `is_friction` holds for a parameter of the scenario only.
-    let start = values.get(name).copied().unwrap_or_default();
+    let start = start_of(case, name, to)?;
     let follower =
         Follower { case, system, name, factors: factors(prepared, values), sign: if to < start { -1.0 } else { 1.0 } };
     let mut path = FrictionPath {
@@ -184,6 +166,34 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, to: f64) -> Re
     };
     follower.follow(&mut path, basis, to)?;
     Ok(path)
+}
+
+/// The present value of a friction parameter that can be followed to another.
+///
+/// # Errors
+/// It moves something else as well; a value that it cannot take.
+pub(super) fn start_of(case: Case<'_>, name: &str, to: f64) -> Result<f64, PathError> {
+    let Case { scenario, prepared, values, .. } = case;
+    let system = prepared.system().ok_or(PathError::Plain("trace"))?;
+    let mixed = |why: String| PathError::Mixed { name: name.to_owned(), why };
+    if let Some(why) = place_beside_laws(scenario, name) {
+        return Err(mixed(why));
+    }
+    let along = values.along(name);
+    let moves = |number: &Number| along.dependence(number) != Dependence::Constant;
+    let others = |law: &Law| law.numbers().into_iter().any(|(key, number)| key != "friction" && moves(number));
+    if system.pairs.iter().any(|pair| others(&pair.law)) || prepared.cases.iter().any(|(_, factor)| moves(factor)) {
+        return Err(mixed(
+            "it is a friction coefficient and something else as well; give them parameters of their own".to_owned(),
+        ));
+    }
+    let mut at_target = values.clone();
+    at_target.insert(name.to_owned(), to);
+    if let Some(refusal) = scenario.refusal(name, to).or_else(|| scenario.law_refusal(&at_target)) {
+        return Err(PathError::Target(refusal));
+    }
+    // `is_friction` holds for a parameter of the scenario only.
+    Ok(values.get(name).copied().unwrap_or_default())
 }
 
 impl Follower<'_> {

@@ -8,7 +8,7 @@ use nalgebra::DVector;
 use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
 use super::load_parameter::LoadParameter;
-use super::start::{PIVOTS, PathError, cold, final_basis, plane_system, state_of};
+use super::start::{PIVOTS, PathError, cold, final_basis, finite_target, plane_system, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
 use crate::contact::load_path::{is_answer, path_lcp};
@@ -73,12 +73,7 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadRea
     let Case { values, watch, .. } = case;
     let prepared = grown.as_deref().unwrap_or(case.prepared);
     let system = plane_system(prepared, "trace")?;
-    if let Some(to) = reach.to
-        && !to.is_finite()
-        && to != f64::NEG_INFINITY
-    {
-        return Err(PathError::Target(format!("cannot follow {name} to {to}")));
-    }
+    finite_target(name, reach.to)?;
     let mut all_factors = factors(prepared, values);
     let direction = parameter.direction(system);
     if direction.amax() == 0.0 {

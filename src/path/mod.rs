@@ -2,6 +2,7 @@
 
 pub mod calibrate;
 pub mod change;
+mod cone_step;
 pub mod cycle;
 pub mod cycle_starts;
 pub mod edge;
@@ -17,6 +18,7 @@ pub mod load;
 pub mod load_parameter;
 pub mod map;
 pub mod merge;
+pub mod on_cone;
 pub mod profile;
 pub mod quantity;
 pub(crate) mod rate;

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::change::Breakpoint;
 use super::friction::FrictionPath;
 use super::load::LoadPath;
+use super::on_cone::ConePath;
 use super::stages::History;
 use crate::answer::record::PairState;
 
@@ -100,6 +101,24 @@ impl PathRecord {
             name: path.name.clone(),
             cases: Vec::new(),
             places,
+            end: path.end_sentence(),
+        }
+    }
+
+    /// Of a path in space; `cases` are the names of all load cases.
+    pub fn of_cone(path: &ConePath, cases: &[String]) -> PathRecord {
+        let places = path.places.iter().enumerate().map(|(place, at)| PathPlace {
+            stage: None,
+            value: at.value,
+            factors: at.factors.clone(),
+            change: change_at(&path.breakpoints, place),
+            pairs: at.pairs.clone(),
+        });
+        PathRecord {
+            followed: if path.over_friction { Followed::Friction } else { Followed::Load },
+            name: path.name.clone(),
+            cases: if path.over_friction { Vec::new() } else { cases.to_vec() },
+            places: places.collect(),
             end: path.end_sentence(),
         }
     }

@@ -34,6 +34,16 @@ pub(super) fn plane_system<'a>(
     system.space_refusal(command).map_or(Ok(system), |why| Err(PathError::Missing(why)))
 }
 
+/// Refuses a target that is no number; −∞ stands for as far down as it goes.
+pub(super) fn finite_target(name: &str, to: Option<f64>) -> Result<(), PathError> {
+    match to {
+        Some(to) if !to.is_finite() && to != f64::NEG_INFINITY => {
+            Err(PathError::Target(format!("cannot follow {name} to {to}")))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Why a path cannot be followed. Its own end (turning point, limit) is no error.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PathError {

@@ -8,10 +8,12 @@ use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{PairState, Verdict};
 use crate::answer::rounding::largest;
 use crate::model::units::Units;
+use crate::path::change::Breakpoint;
 use crate::path::end::PathEnd;
 use crate::path::friction::FrictionPath;
 use crate::path::limit::Limit;
 use crate::path::load::LoadPath;
+use crate::path::on_cone::ConePath;
 use crate::text::number::{short, with_unit};
 
 /// A breakpoint with the digits it has been found to: ten, without trailing zeros.
@@ -54,7 +56,9 @@ fn breakpoints(
 fn role_of(end: &PathEnd) -> Role {
     match end {
         PathEnd::Target | PathEnd::Unbounded => Role::Muted,
-        PathEnd::Turning | PathEnd::Limit(_) | PathEnd::Returned | PathEnd::NoAnswer => Role::Warning,
+        PathEnd::Turning | PathEnd::Limit(_) | PathEnd::Collapse(_) | PathEnd::Returned | PathEnd::NoAnswer => {
+            Role::Warning
+        }
     }
 }
 
@@ -84,6 +88,32 @@ pub fn write_load(out: &mut dyn Write, path: &LoadPath, units: &Units, style: &S
         breakpoints(out, name, &rows, units, style)?;
     }
     style.paragraph(out, role_of(&path.end), &path.end_sentence())
+}
+
+/// Writes the breakpoints of a path in space and how it ended.
+pub fn write_on_cone(out: &mut dyn Write, path: &ConePath, units: &Units, style: &Style) -> io::Result<()> {
+    let name = &path.name;
+    if path.from_zero {
+        let text = format!("there is no answer at the present load: the path starts from {name} = 0");
+        style.paragraph(out, Role::Muted, &text)?;
+    }
+    if path.breakpoints.is_empty() {
+        let text = format!("no breakpoints from {name} = {}", exact(path.start));
+        style.paragraph(out, Role::Plain, &text)?;
+    } else {
+        let row = |at: &Breakpoint| {
+            let jump = if at.jump { " (a jump to another answer)" } else { "" };
+            (at.value, format!("{}{jump}", at.sentence), Some(max_slip(&path.places[at.place].pairs)))
+        };
+        let rows: Vec<_> = path.breakpoints.iter().map(row).collect();
+        breakpoints(out, name, &rows, units, style)?;
+    }
+    style.paragraph(out, role_of(&path.end), &path.end_sentence())?;
+    let steps = format!(
+        "followed on Coulomb's cone in {} steps, each an answer that passed its check; that nothing else happens within a          step is not proved",
+        path.places.len()
+    );
+    style.paragraph(out, Role::Muted, &steps)
 }
 
 /// Writes the breakpoints of a friction path, its intervals and how it ended.

@@ -18,6 +18,16 @@ pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Styl
         HistoryEnd::Limit { .. } => Role::Warning,
     };
     style.paragraph(out, role, &history.end_sentence())?;
+    if let Some(error) = history.stages.last().and_then(|stage| stage.estimated_error) {
+        let right = match error {
+            error if error < 1e-14 => "rounding".to_owned(),
+            error => format!("about {} of the largest", residual(error)),
+        };
+        let text = format!(
+            "followed on Coulomb's cone, where directions of slip can turn on the way: displacements are right to {right}"
+        );
+        style.paragraph(out, Role::Muted, &text)?;
+    }
     for (index, stage) in history.stages.iter().enumerate() {
         for moment in stage.moments.iter().filter(|moment| moment.jump) {
             let text = format!(
@@ -86,7 +96,7 @@ pub fn write_stage(
     columns.extend(history.cases.iter().map(|case| Column::given(case, None)));
     columns.push(Column::words("change"));
     let mut table = Table::new(columns);
-    for moment in &stage.moments {
+    for moment in stage.moments.iter().filter(|moment| !moment.is_passed()) {
         let mut cells = vec![Cell::number(moment.t)];
         cells.extend(moment.factors.iter().map(|factor| Cell::number(*factor)));
         cells.push(Cell::from(style.text(&moment.sentence)));

@@ -390,6 +390,8 @@ fn friction_polygon(polygon: &PolygonRecord) -> String {
             " · on Coulomb's cone after {steps} Newton {word}, which moved slips by up to {} % of the largest",
             short(100.0 * distance)
         );
+    } else if polygon.cone {
+        text += " where steps began anew · followed on Coulomb's cone";
     }
     text
 }

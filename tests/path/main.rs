@@ -23,3 +23,4 @@ mod stages;
 mod stages_in_space;
 mod sweep;
 mod sweep_following;
+mod trace_in_space;

@@ -66,7 +66,7 @@ fn a_slider_pulled_along_x_and_then_along_y_draws_a_tractrix() {
     near_all("friction", &end.friction(), &[expected[0] - 3.0, expected[1] - 4.0], 1e-9);
     let polygon = last.end.polygon.expect("in space");
     assert!(last.end.check.passed && polygon.cone && polygon.facets == 16, "{:?}", last.end.check);
-    assert!(last.error.expect("curved") <= 1e-8);
+    assert!(last.estimated_error.expect("curved") <= 1e-8);
 }
 
 /// Straight there and back: held until friction has turned round, 2 f W = 4 of the pull of 5, then it follows.
@@ -261,28 +261,19 @@ fn random_systems_end_where_a_march_in_short_steps_does() {
         let targets = [[1.0, 0.0], [0.8, 1.2], [1.2, -0.7]];
         let history = followed(&Case::json(system(&r, [&p, &h], &friction, &gap, &targets, true)));
         assert_eq!(history.end, HistoryEnd::Complete, "{k}");
-        // Errors of the march fall with its step: from two of them to none.
-        if std::env::var("LOOK").is_ok() {
-            for steps in [200, 400, 800, 1600, 3200] {
-                println!("{k} {steps} {:?}", marched(&r, [&p, &h], &friction, &gap, &targets, steps));
-            }
-            for pair in &history.stages[2].end.pairs {
-                println!("{:?} {:?}", pair.z_n, pair.slip());
-            }
-            if k == 3 {
-                panic!("seen");
-            }
-        }
-        let [coarse, fine] = [200, 400].map(|steps| marched(&r, [&p, &h], &friction, &gap, &targets, steps));
+        // Its error falls with its step: with a quarter of it to a quarter.
+        let [coarse, fine] = [400, 1600].map(|steps| marched(&r, [&p, &h], &friction, &gap, &targets, steps));
         let end = &history.stages[2].end;
         assert!(end.check.passed, "{k}: {:?}", end.check);
         for (i, pair) in end.pairs.iter().enumerate() {
             let joints = [i, m + 2 * i, m + 2 * i + 1];
-            let expected = joints.map(|joint| 2.0 * fine[joint] - coarse[joint]);
-            let allowed = joints.map(|joint| (fine[joint] - coarse[joint]).abs()).into_iter().fold(1e-9, f64::max);
-            turned = turned.max(allowed);
-            near(&format!("{k}: z_n of {}", pair.id), pair.z_n, expected[0], allowed, 1.0);
-            near_all(&format!("{k}: z_t of {}", pair.id), &pair.slip(), &expected[1..], allowed);
+            let expected = joints.map(|joint| fine[joint]);
+            let error = joints.map(|joint| (fine[joint] - coarse[joint]).abs()).into_iter().fold(0.0, f64::max);
+            turned = turned.max(error);
+            let found = [pair.z_n, pair.slip()[0], pair.slip()[1]];
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!((found - expected).abs() <= 0.5 * error + 1e-7, "{k}, {}: {found} {expected} {error}", pair.id);
+            }
             slips += usize::from(pair.state == State::Slip);
             opens += usize::from(pair.state == State::Open);
         }

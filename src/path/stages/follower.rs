@@ -12,7 +12,7 @@ use super::standing::Laws;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{OutcomeKind, PairState, Ray, State};
 use crate::contact::problem::ContactProblem;
-use crate::path::change::{between, sentence};
+use crate::path::change::{between, sentence, with_directions};
 use crate::path::start::PathError;
 use crate::solve::Prepared;
 use crate::watch::Watch;
@@ -67,7 +67,7 @@ pub(super) trait Follower<'a> {
     }
 
     /// What it may be wrong by there, as a share of the largest displacement, where the way is no straight line.
-    fn error(&self) -> Option<f64> {
+    fn estimated_error(&self) -> Option<f64> {
         None
     }
 
@@ -180,7 +180,7 @@ pub(super) trait Follower<'a> {
             pivots: way.pivots,
             slip,
             energy: None,
-            error: self.error(),
+            estimated_error: self.estimated_error(),
             end,
         }
     }
@@ -205,7 +205,8 @@ pub(super) fn recorded(place: &Place<'_>, stages: Vec<StageResult>, end: History
 /// What changes at each moment: what the pairs did on the way to it and do after it differs.
 fn tell_changes<'i, I: Iterator<Item = &'i str>>(moments: &mut [Moment], ids: impl Fn() -> I) {
     for k in 0..moments.len().saturating_sub(1) {
-        let changes = between(ids(), &moments[k].way, &moments[k + 1].way);
+        let mut changes = between(ids(), &moments[k].way, &moments[k + 1].way);
+        with_directions(&mut changes, &moments[k + 1].pairs);
         moments[k].sentence = sentence(&changes);
         moments[k].changes = changes;
     }

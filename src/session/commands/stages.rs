@@ -15,6 +15,8 @@ use crate::view::style::Role;
 /// that stage and the pairs at its end are shown. `plot path` draws the loops. Until the next change or `solve`,
 /// `expect` and the tables `pairs`, `displacements`, `members`, `reactions` and `check` mean the end of the history.
 ///
+/// In space, where directions of slip turn with the motion, the way is followed on Coulomb's cone and it is said how exactly.
+///
 /// The rate problems between two events are always solved under the default rules: `set covering`, `set tie-break`
 /// and `set engine` do not reach them.
 #[derive(Debug, Args)]
@@ -71,7 +73,7 @@ pub(in crate::session) fn history_json(history: &History) -> Value {
                 "sentence": at.sentence, "jump": at.jump,
             })
         });
-        json!({
+        let mut of_stage = json!({
             "pivots": stage.pivots,
             "factors": stage.moments.last().map(|end| &end.factors),
             "slip_increment": stage.slip,
@@ -81,7 +83,11 @@ pub(in crate::session) fn history_json(history: &History) -> Value {
             "balance": stage.energy.map(|energy| energy.residual),
             "changes": changes.collect::<Vec<_>>(),
             "pairs": stage.moments.last().map(|end| &end.pairs),
-        })
+        });
+        if let Some(error) = stage.estimated_error {
+            of_stage["estimated_error"] = json!(error);
+        }
+        of_stage
     });
     json!({
         "cases": history.cases,

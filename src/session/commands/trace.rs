@@ -7,9 +7,11 @@ use indexmap::IndexMap;
 use serde::Serialize;
 
 use crate::answer::record::State;
+use crate::model::quantity::Quantity;
 use crate::path::change::{Breakpoint, Change};
 use crate::path::friction::{self, FrictionPath, Interval, is_friction};
 use crate::path::load::{self, LoadPath, LoadReach};
+use crate::path::on_cone::{self, ConePath};
 use crate::path::quantity::OnPath;
 use crate::path::record::PathRecord;
 use crate::session::commands::along::Along;
@@ -17,6 +19,7 @@ use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
 use crate::session::start::case_names;
 use crate::session::{CommandError, Next, Output, Session, worker};
+use crate::solve::Prepared;
 use crate::view;
 
 /// Friction without a target and without a slider ends here.
@@ -26,7 +29,8 @@ const FRICTION: f64 = 10.0;
 ///
 /// NAME is a load case, a parameter in which the loads are linear, or a friction parameter. A load is followed from its present factor
 /// upwards (from 0 where there is no answer now) to the target, a turning point or its limit; friction up to the
-/// target, or else to the end of the slider. `plot path` and `export path` show the way afterwards.
+/// target, or else to the end of the slider. In space the answer is followed on Coulomb's cone in steps, and breakpoints are
+/// searched for between two of them. `plot path` and `export path` show the way afterwards.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  trace pull\n  trace F2 to 400\n  trace f to 1\n  trace pull --through\n  trace pull to 260 of x_t c6, max z_t"
@@ -97,12 +101,19 @@ impl Session {
         let units = self.now.scenario.units.clone();
         let geometry = Arc::clone(&ground.prepared);
         let what = name.to_owned();
+        let in_space = geometry.system().is_some_and(|system| system.is_in_space());
         if is_friction(ground.case(io.watch), name) {
             let to = to.unwrap_or_else(|| {
                 let slider = self.now.scenario.parameters.get(name).and_then(|p| p.max);
                 let present = self.now.values.get(name).copied().unwrap_or_default();
                 slider.filter(|max| *max > present).unwrap_or(FRICTION.max(2.0 * present))
             });
+            if in_space {
+                let path = worker::run(io.watch, move |watch| {
+                    on_cone::trace_friction(ground.case(watch), Some(&ground.solved), &what, to)
+                })??;
+                return self.show_on_cone(&path, &geometry, &quantities, io);
+            }
             let path = worker::run(io.watch, move |watch| {
                 friction::trace(ground.case(watch), Some(&ground.solved), &what, to)
             })??;
@@ -116,6 +127,12 @@ impl Session {
             self.keep_path(record);
             return Ok(());
         }
+        if in_space {
+            let path = worker::run(io.watch, move |watch| {
+                on_cone::trace_load(ground.case(watch), Some(&ground.solved), &what, LoadReach { to, through })
+            })??;
+            return self.show_on_cone(&path, &geometry, &quantities, io);
+        }
         let path = worker::run(io.watch, move |watch| {
             load::trace(ground.case(watch), Some(&ground.solved), &what, LoadReach { to, through })
         })??;
@@ -128,6 +145,75 @@ impl Session {
         })?;
         self.keep_path(record);
         Ok(())
+    }
+
+    /// Shows a path in space and keeps it.
+    fn show_on_cone(
+        &mut self,
+        path: &ConePath,
+        geometry: &Prepared,
+        quantities: &[Quantity],
+        io: &mut Output<'_>,
+    ) -> Result<(), CommandError> {
+        let units = self.now.scenario.units.clone();
+        let record = PathRecord::of_cone(path, &case_names(geometry));
+        let along = self.report_along(geometry, &record, quantities, io.watch)?;
+        io.show(&ConeReport::of(path, &record, &along), |out, style| {
+            view::path::write_on_cone(out, path, &units, style)?;
+            view::quantities::write_along(out, &record, &along, &units, style)
+        })?;
+        self.keep_path(record);
+        Ok(())
+    }
+}
+
+/// A path in space, with the keys of the two below that it has.
+#[derive(Serialize)]
+struct ConeReport<'a> {
+    along: Along<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    load: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    parameter: Option<&'a str>,
+    start: f64,
+    from_zero: bool,
+    breakpoints: Vec<ConeTurn<'a>>,
+    limit: Option<f64>,
+    last: f64,
+    end: &'a str,
+}
+
+#[derive(Serialize)]
+struct ConeTurn<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    factor: Option<f64>,
+    value: f64,
+    changes: &'a [Change],
+    jump: bool,
+    sentence: &'a str,
+}
+
+impl<'a> ConeReport<'a> {
+    fn of(path: &'a ConePath, record: &'a PathRecord, along: &'a [OnPath]) -> Self {
+        let name = path.name.as_str();
+        let turn = |at: &'a Breakpoint| ConeTurn {
+            factor: (!path.over_friction).then_some(at.value),
+            value: at.value,
+            changes: &at.changes,
+            jump: at.jump,
+            sentence: &at.sentence,
+        };
+        ConeReport {
+            along: Along::of(record, along),
+            load: (!path.over_friction).then_some(name),
+            parameter: path.over_friction.then_some(name),
+            start: path.start,
+            from_zero: path.from_zero,
+            breakpoints: path.breakpoints.iter().map(turn).collect(),
+            limit: path.limit(),
+            last: path.last(),
+            end: &record.end,
+        }
     }
 }
 

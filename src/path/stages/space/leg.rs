@@ -1,15 +1,15 @@
 //! A leg of a history: a piece of the way in which no pair changes what it does.
 //!
-//! Slips turn on the way, so that steps ([`super::increment`]) are right to first order only: friction stands against the
+//! Slips turn on the way, so that steps ([`crate::path::cone_step`]) are right to first order only: friction stands against the
 //! direction at their end. The same leg is taken in one step, in two, in three …; what the ends tend to as the steps get
 //! shorter is found by extrapolation (Aitken and Neville), whose last correction is the error that is left. Every end has
 //! the schemes of the leg, so there is no kink in what is extrapolated. Where nothing turns one step is exact, and two say so.
 
 use nalgebra::DVector;
 
-use super::increment::{Scheme, Step, Stepper};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
+use crate::path::cone_step::{Scheme, Step, Stepper};
 use crate::path::stages::course::Course;
 use crate::path::stages::integrals::Integrals;
 use crate::path::start::PathError;

@@ -1,19 +1,15 @@
 //! Load histories in space, on Coulomb's cone (method §7).
 //!
 //! Directions of slip turn on the way, so that rates are not constant between two events. The law is the one of the rate
-//! problem all the same: eq. (8) in increments from the slips just before ([`increment`]), as the increments get short.
+//! problem all the same: eq. (8) in increments from the slips just before ([`crate::path::cone_step`]), as the increments get short.
 //! From event to event the way is taken in legs ([`leg`]) whose ends are extrapolated to steps of no length, as exactly as
 //! is asked for; an event is crossed in one step so short that nothing can turn in it. A step begins from the one before,
 //! and where that leads nowhere from the answer on the friction polygon.
 
-mod increment;
 mod leg;
-
-use std::cell::Cell;
 
 use nalgebra::DVector;
 
-use self::increment::{PolygonRay, Scheme, Step, Stepper};
 use self::leg::{Begin as LegBegin, Measure, TOLERANCE, Taken, along, change_within, taken};
 use super::Begin;
 use super::beyond::explanation;
@@ -34,12 +30,11 @@ use crate::lcp::outcome::RayDirection;
 use crate::lcp::problem::NOISE;
 use crate::lcp::variable::Variable;
 use crate::model::rules::{Covering, Rules};
+use crate::path::cone_step::{PolygonRay, Scheme, Step, Stepper};
 use crate::path::start::PathError;
 use crate::solve::Prepared;
 use crate::watch::Watch;
 
-/// Fewest facets of the polygon in a history, where directions of slip turn.
-const FACETS: u16 = 16;
 /// A step across an event is this part of a stage: what turns in it moves the end by some 1e-14.
 const SHORT: f64 = 1e-7;
 /// An event is located to this part of a stage.
@@ -96,7 +91,7 @@ pub(super) fn follow<'a>(
     if matches!(begin, Begin::Slips(_)) {
         return Err(PathError::Missing("a history in space begins at the unloaded structure".to_owned()));
     }
-    let stepper = Stepper { facets: rules.facets.max(FACETS), watch, pivots: Cell::new(0), steps: Cell::new(0) };
+    let stepper = Stepper::new(rules.facets, watch);
     let (joints, pairs) = (laws.problem.system.joint_count(), laws.problem.system.pair_count());
     let mut z = DVector::zeros(joints);
     laws.problem.gaps().zip(z.iter_mut()).for_each(|(gap, z)| *z = gap.max(0.0));
@@ -313,7 +308,7 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
         self.integrals.clone()
     }
 
-    fn error(&self) -> Option<f64> {
+    fn estimated_error(&self) -> Option<f64> {
         Some(self.error)
     }
 
@@ -397,11 +392,14 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
                     h = if rows <= EASY { h.max(2.0 * length) } else { length };
                 }
                 Err(found) => {
-                    let (Ahead::Change(length) | Ahead::Shorter(length)) = found;
+                    // A leg has a short step at its end: it shall end at the event, from where that is crossed.
+                    let (length, change) = match found {
+                        Ahead::Change(length) => (length - SHORT, Some(length)),
+                        Ahead::Shorter(length) => (length, None),
+                    };
                     next = Some(length);
                     if length <= 2.0 * SHORT {
-                        // To the event, and across it.
-                        event = matches!(found, Ahead::Change(_)).then_some(length);
+                        event = change;
                         ahead = None;
                     }
                 }

@@ -1,9 +1,11 @@
-//! One step of a history on Coulomb's cone: the answer of eq. (8) in increments from the slips where the step began.
+//! One step of a path in space, on Coulomb's cone: the answer of eq. (8) near another one, its slips counted from those where
+//! the step began.
 
 use std::cell::Cell;
 
 use nalgebra::DVector;
 
+use super::start::{PathError, cold, state_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::State;
 use crate::contact::cone::{ConeFailure, ConeState};
@@ -12,9 +14,10 @@ use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
 use crate::contact::written::ContactLcp;
 use crate::lcp::outcome::RayDirection;
-use crate::path::start::{PathError, cold, state_of};
 use crate::watch::Watch;
 
+/// Fewest facets of the polygon in a path, on which directions of slip turn.
+const FACETS: u16 = 16;
 /// Finest polygon from which Newton's method is started.
 const FINEST: u16 = 64;
 
@@ -42,11 +45,14 @@ pub(super) struct Stepper<'a> {
     pub(super) watch: &'a dyn Watch,
     /// Pivots made on polygons.
     pub(super) pivots: Cell<usize>,
-    /// Answers found.
-    pub(super) steps: Cell<usize>,
 }
 
-impl Stepper<'_> {
+impl<'a> Stepper<'a> {
+    /// Of a path that is followed with polygons of at least so many facets.
+    pub(super) fn new(facets: u16, watch: &'a dyn Watch) -> Stepper<'a> {
+        Stepper { facets: facets.max(FACETS), watch, pivots: Cell::new(0) }
+    }
+
     /// The problem for slips that count from those of `from`, total z over the joints.
     pub(super) fn from_slips(&self, mut problem: ContactProblem, from: &DVector<f64>) -> ContactProblem {
         let shift = slips_of(&problem, from);
@@ -115,7 +121,6 @@ impl Stepper<'_> {
             Err(ConeFailure::Stopped) => return Err(PathError::Interrupted),
             Err(ConeFailure::NotConverged { .. } | ConeFailure::NotFinite) => return Ok(None),
         };
-        self.steps.set(self.steps.get() + 1);
         let scheme = scheme_of(problem, &answer.states, &answer.z);
         let increments = JointState::on_cone(problem, answer);
         Ok(Some(Step { z: &increments.z + slips_of(problem, from), increments, scheme }))
