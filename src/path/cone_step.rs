@@ -53,21 +53,6 @@ impl<'a> Stepper<'a> {
         Stepper { facets: facets.max(FACETS), watch, pivots: Cell::new(0) }
     }
 
-    /// The problem for slips that count from those of `from`, total z over the joints.
-    pub(super) fn from_slips(&self, mut problem: ContactProblem, from: &DVector<f64>) -> ContactProblem {
-        let shift = slips_of(&problem, from);
-        let (load, sizes) = {
-            let stiffness = &problem.system.stiffness;
-            let mut sizes = DVector::zeros(shift.len());
-            for (joint, slip) in shift.iter().enumerate().filter(|(_, slip)| **slip != 0.0) {
-                sizes.zip_apply(&stiffness.column(joint), |size: &mut f64, entry| *size += (entry * slip).abs());
-            }
-            (stiffness * &shift, sizes)
-        };
-        problem.add_load(1.0, &load, &sizes);
-        problem
-    }
-
     /// The answer of a problem in increments from the slips of `from` that Newton's method finds near `guess`, total z;
     /// `None` where it finds none.
     pub(super) fn near(
@@ -76,7 +61,7 @@ impl<'a> Stepper<'a> {
         from: &DVector<f64>,
         guess: &DVector<f64>,
     ) -> Result<Option<Step>, PathError> {
-        let problem = self.from_slips(problem, from);
+        let problem = behind_slips(problem, from);
         let start = guess - slips_of(&problem, from);
         self.newton(&problem, from, &start)
     }
@@ -87,7 +72,7 @@ impl<'a> Stepper<'a> {
         problem: ContactProblem,
         from: &DVector<f64>,
     ) -> Result<Result<Step, PolygonRay>, PathError> {
-        let mut problem = self.from_slips(problem, from);
+        let mut problem = behind_slips(problem, from);
         let mut facets = self.facets;
         loop {
             problem = problem.with_polygon(Polygon::regular(facets, 0.0));
@@ -119,12 +104,27 @@ impl<'a> Stepper<'a> {
         let answer = match OnCone::new(problem).answer(start, self.watch) {
             Ok(answer) => answer,
             Err(ConeFailure::Stopped) => return Err(PathError::Interrupted),
-            Err(ConeFailure::NotConverged { .. } | ConeFailure::NotFinite) => return Ok(None),
+            Err(ConeFailure::NotConverged { .. } | ConeFailure::NotFinite | ConeFailure::DoNotFit) => return Ok(None),
         };
         let scheme = scheme_of(problem, &answer.states, &answer.z);
         let increments = JointState::on_cone(problem, answer);
         Ok(Some(Step { z: &increments.z + slips_of(problem, from), increments, scheme }))
     }
+}
+
+/// The problem for slips that count from those of `from`, total z over the joints.
+pub(super) fn behind_slips(mut problem: ContactProblem, from: &DVector<f64>) -> ContactProblem {
+    let shift = slips_of(&problem, from);
+    let (load, sizes) = {
+        let stiffness = &problem.system.stiffness;
+        let mut sizes = DVector::zeros(shift.len());
+        for (joint, slip) in shift.iter().enumerate().filter(|(_, slip)| **slip != 0.0) {
+            sizes.zip_apply(&stiffness.column(joint), |size: &mut f64, entry| *size += (entry * slip).abs());
+        }
+        (stiffness * &shift, sizes)
+    };
+    problem.add_load(1.0, &load, &sizes);
+    problem
 }
 
 /// z_τ of total displacements, 0 in the normal joints.

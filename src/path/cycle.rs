@@ -4,7 +4,7 @@
 //! open, not on the slips committed before: where both come back after a cycle, every further cycle is the same.
 
 use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until};
-use super::start::{PathError, plane_system};
+use super::start::PathError;
 use super::static_shakedown::{Static, static_limit, static_shakedown};
 use crate::answer::record::{PairState, Ray};
 use crate::contact::problem::ContactProblem;
@@ -17,6 +17,8 @@ use crate::text::number::short;
 
 /// Two states are one where they differ by less than this share of the largest of their kind.
 const SAME: f64 = 1e-12;
+/// In space, where the way is followed to some 1e-10.
+const SAME_IN_SPACE: f64 = 1e-8;
 /// What two cycles leave behind is the same where it differs by less than this share of it.
 const SAME_NET: f64 = 1e-6;
 /// Cycles after which they are judged first; then after twice as many, and so on.
@@ -168,6 +170,8 @@ struct Sizes {
     way: f64,
     /// The largest gap, or way.
     gap: f64,
+    /// Two states are one where they differ by less than this share.
+    same: f64,
 }
 
 impl Sizes {
@@ -180,7 +184,7 @@ impl Sizes {
         let terms = moments().map(|moment| moment.state.terms.amax()).fold(force, f64::max);
         let slips = stages.iter().flat_map(|stage| &stage.slip).fold(0.0, |a: f64, slip| a.max(slip.abs()));
         let way = slips.max(terms * softest);
-        Sizes { force, terms, way, gap: largest(&|pair| pair.z_n).max(way) }
+        Sizes { force, terms, way, gap: largest(&|pair| pair.z_n).max(way), same: SAME }
     }
 
     /// A difference of forces as a share of the largest; 0 where it is rounding.
@@ -194,7 +198,7 @@ impl Sizes {
 
     /// A way without what is rounding of it.
     fn moved(&self, way: f64) -> f64 {
-        if way.abs() <= SAME * self.way { 0.0 } else { way }
+        if way.abs() <= self.same * self.way { 0.0 } else { way }
     }
 }
 
@@ -223,11 +227,16 @@ pub(super) fn followed(
     most: usize,
     begin: &Begin,
 ) -> Result<Cycle, PathError> {
-    let system = plane_system(case.prepared, "cycle")?;
+    let system = case.prepared.system().ok_or(PathError::Plain("cycle"))?;
     let [a, b] = ends;
-    let softest = softest(system);
+    let (softest, same) = (softest(system), if system.is_in_space() { SAME_IN_SPACE } else { SAME });
     let (start, turned) = (target(case, name, a)?, target(case, name, b)?);
     if let Begin::Slips(slips) = begin {
+        if system.is_in_space() {
+            let why =
+                "cycle: in space a history begins at the unloaded structure; `from` works in the plane only so far";
+            return Err(PathError::Missing(why.to_owned()));
+        }
         within_reason(&contact_problem(system, &start, case.values), slips)?;
     }
     let mut targets = vec![start.clone()];
@@ -238,11 +247,11 @@ pub(super) fn followed(
             return false;
         }
         count *= 2;
-        judged(stages, true, softest).0 != Kind::Undecided
+        judged(stages, true, (softest, same)).0 != Kind::Undecided
     };
     let history = follow_until(case, begin, &targets, &mut decided)?;
-    let (kind, turns) = judged(&history.stages, history.end == HistoryEnd::Complete, softest);
-    let sentence = said(kind, &turns, &history);
+    let (kind, turns) = judged(&history.stages, history.end == HistoryEnd::Complete, (softest, same));
+    let sentence = said(kind, &turns, &history, same);
     Ok(Cycle { name: name.to_owned(), ends, kind, turns, history, sentence, every_start: Static::NotAsked })
 }
 
@@ -253,11 +262,16 @@ fn softest(system: &ContactSystem) -> f64 {
     stiffness.map(f64::recip).fold(0.0, f64::max)
 }
 
+/// How far two vectors along t1 and t2 are apart.
+fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
 /// What the cycles of a history come to, and those up to the first that repeats; the last stage of one that is not
 /// `complete` ends in a limit.
-fn judged(stages: &[StageResult], complete: bool, softest: f64) -> (Kind, Vec<Turn>) {
+fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -> (Kind, Vec<Turn>) {
     let end = |stage: usize| &stages[stage].end.pairs;
-    let sizes = Sizes::of(stages, softest);
+    let sizes = Sizes { same, ..Sizes::of(stages, softest) };
     let cycles = (stages.len() - usize::from(!complete)).saturating_sub(1) / 2;
     let mut turns: Vec<Turn> = Vec::new();
     let mut kind = Kind::Undecided;
@@ -266,12 +280,20 @@ fn judged(stages: &[StageResult], complete: bool, softest: f64) -> (Kind, Vec<Tu
         let halves: [&StageResult; 2] = [&stages[there], &stages[back]];
         let pairs = end(back).iter().enumerate().map(|(index, pair)| {
             let [there, back] = halves.map(|half| sizes.moved(half.slip[index]));
-            PairCycle { pair: pair.id.clone(), there, back, net: sizes.moved(there + back), total: pair.z_t }
+            let net = match (pair.space, end(2 * number)[index].space) {
+                (Some(now), Some(before)) => apart(now.z_t, before.z_t),
+                _ => there + back,
+            };
+            PairCycle { pair: pair.id.clone(), there, back, net: sizes.moved(net), total: pair.z_t }
         });
         let pairs: Vec<PairCycle> = pairs.collect();
         let off = |now: usize, before: usize| {
             end(now).iter().zip(end(before)).fold(0.0, |largest: f64, (a, b)| {
-                let forces = sizes.force_share((a.x_n - b.x_n).abs().max((a.x_t - b.x_t).abs()));
+                let friction = match (a.space, b.space) {
+                    (Some(a), Some(b)) => apart(a.x_t, b.x_t),
+                    _ => (a.x_t - b.x_t).abs(),
+                };
+                let forces = sizes.force_share((a.x_n - b.x_n).abs().max(friction));
                 largest.max(forces).max(sizes.gap_share((a.z_n - b.z_n).abs()))
             })
         };
@@ -280,28 +302,30 @@ fn judged(stages: &[StageResult], complete: bool, softest: f64) -> (Kind, Vec<Tu
         let difference = (number > 0).then(|| closed.max(off(there, there - 2)));
         let lost = halves.map(|half| half.dissipated);
         // What moves to and fro without loss is open, or on a bound of 0.
-        let lossless = lost.iter().all(|lost| *lost <= SAME * sizes.terms * sizes.way);
+        let lossless = lost.iter().all(|lost| *lost <= same * sizes.terms * sizes.way);
         let lost = if lossless { [0.0; 2] } else { lost };
         let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
         let schemes = |first: usize| stages[first..].iter().take(2).flat_map(StageResult::schemes);
-        let repeated = (number + 1 < cycles).then(|| schemes(there).eq(schemes(there + 2)));
+        // In space places passed on the way are among them.
+        let in_space = end(back).iter().any(|pair| pair.space.is_some());
+        let repeated = (number + 1 < cycles && !in_space).then(|| schemes(there).eq(schemes(there + 2)));
         let before = turns.last().and_then(|turn: &Turn| turn.difference);
         turns.push(Turn { dissipated: lost, pairs, difference, schemes: schemes(there).count(), repeated });
         // A cycle that only comes near to the one before is followed by others that come nearer: how far in all?
         let tail = difference.zip(before).map_or(0.0, |(now, before)| tail(now, before));
-        if closed > SAME || tail > SAME {
+        if closed > same || tail > same {
             continue;
         }
         // What is left behind may be the tail of a convergence: it ratchets only where the next cycle leaves the same.
         let before = turns.len().checked_sub(2).map(|before| &turns[before].pairs);
-        let same = before.is_some_and(|before| {
+        let repeats = before.is_some_and(|before| {
             let now = turns[turns.len() - 1].pairs.iter();
             now.zip(before).all(|(now, before)| (now.net - before.net).abs() <= SAME_NET * net)
         });
         kind = match () {
             () if lossless && net == 0.0 => Kind::ShakesDown,
             () if net == 0.0 => Kind::Alternates,
-            () if same => Kind::Ratchets,
+            () if repeats => Kind::Ratchets,
             () => continue,
         };
         break;
@@ -312,7 +336,7 @@ fn judged(stages: &[StageResult], complete: bool, softest: f64) -> (Kind, Vec<Tu
     (kind, turns)
 }
 
-fn said(kind: Kind, turns: &[Turn], history: &History) -> String {
+fn said(kind: Kind, turns: &[Turn], history: &History, same: f64) -> String {
     let count = turns.len();
     match kind {
         Kind::ShakesDown => {
@@ -320,8 +344,8 @@ fn said(kind: Kind, turns: &[Turn], history: &History) -> String {
                 "nothing slips under a force in cycle {count}: it is elastic, and so is every further one, the same"
             )
         }
-        Kind::Alternates => format!("the slips of cycle {count} go to and fro; {}", recurrence(turns)),
-        Kind::Ratchets => format!("cycle {count} leaves slips behind; {}", recurrence(turns)),
+        Kind::Alternates => format!("the slips of cycle {count} go to and fro; {}", recurrence(turns, same)),
+        Kind::Ratchets => format!("cycle {count} leaves slips behind; {}", recurrence(turns, same)),
         Kind::Collapses => format!("in cycle {}: {}", count + 1, history.end_sentence()),
         Kind::Undecided => {
             let difference = |index: usize| turns.get(index).and_then(|turn| turn.difference);
@@ -335,13 +359,13 @@ fn said(kind: Kind, turns: &[Turn], history: &History) -> String {
                 (Some(last), _) => format!("; it differs from the one before by {last:.1e} of the largest"),
                 _ => String::new(),
             };
-            format!("no cycle of {count} repeats to {SAME:e}{rate}")
+            format!("no cycle of {count} repeats to {same:e}{rate}")
         }
     }
 }
 
 /// Why every further cycle is as the last.
-fn recurrence(turns: &[Turn]) -> String {
+fn recurrence(turns: &[Turn], same: f64) -> String {
     let Some(last) = turns.last() else { return String::new() };
     let next = match last.repeated {
         Some(true) => format!("; the next was followed as well and passes the same {} working schemes", last.schemes),
@@ -350,7 +374,7 @@ fn recurrence(turns: &[Turn]) -> String {
     };
     let before = turns.len().checked_sub(2).and_then(|before| turns[before].difference);
     let near = match (last.difference, before) {
-        (None, _) => format!("to {SAME:e} of the largest"),
+        (None, _) => format!("to {same:e} of the largest"),
         (Some(now), _) if now <= NOISE => "to rounding (256 ε of the terms that each force sums)".to_owned(),
         (Some(now), Some(before)) if now < before => format!(
             "to {now:.1e} of the largest, {:.3} times the difference of the cycle before: where that goes on, all later cycles \

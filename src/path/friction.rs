@@ -143,7 +143,7 @@ struct Onward {
 /// See [`PathError`].
 pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, to: f64) -> Result<FrictionPath, PathError> {
     let Case { prepared, values, .. } = case;
-    let system = plane_system(prepared, "trace")?;
+    let system = plane_system(prepared, "trace", "at the prompt it follows Coulomb's cone")?;
     let start = start_of(case, name, to)?;
     let follower =
         Follower { case, system, name, factors: factors(prepared, values), sign: if to < start { -1.0 } else { 1.0 } };

@@ -72,7 +72,7 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadRea
     let (parameter, grown) = LoadParameter::find(case, name)?;
     let Case { values, watch, .. } = case;
     let prepared = grown.as_deref().unwrap_or(case.prepared);
-    let system = plane_system(prepared, "trace")?;
+    let system = plane_system(prepared, "trace", "at the prompt it follows Coulomb's cone")?;
     finite_target(name, reach.to)?;
     let mut all_factors = factors(prepared, values);
     let direction = parameter.direction(system);

@@ -5,6 +5,8 @@
 //! place is searched for between its ends. Every place of the path is freshly checked; that none was overlooked between two of
 //! them is not proved.
 
+use std::sync::Arc;
+
 use nalgebra::DVector;
 
 use super::change::{Breakpoint, between, sentence, with_directions};
@@ -91,8 +93,11 @@ impl ConePath {
 }
 
 /// The contact system of a problem whose answer in space can be followed.
-fn system_of<'a>(prepared: &'a Prepared, rules: Rules) -> Result<&'a std::sync::Arc<ContactSystem>, PathError> {
+fn system_of(prepared: &Prepared, rules: Rules) -> Result<&Arc<ContactSystem>, PathError> {
     let system = prepared.system().ok_or(PathError::Plain("trace"))?;
+    if let Some(refusal) = system.dependence_refusal("trace") {
+        return Err(PathError::Missing(refusal));
+    }
     match rules.cone {
         true => Ok(system),
         false => Err(PathError::Missing(

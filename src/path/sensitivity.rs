@@ -59,7 +59,7 @@ pub struct Sensitivity {
 /// Where there is no answer, or a bare LCP.
 pub fn sensitivity(case: Case<'_>, solved: &Solved) -> Result<Sensitivity, PathError> {
     let Case { scenario, prepared, values, .. } = case;
-    let system = plane_system(prepared, "sensitivity")?;
+    let system = plane_system(prepared, "sensitivity", "`sweep` shows how answers change")?;
     let (RunData::Contact { contact, problem, .. }, Some(basis)) = (&solved.run, final_basis(solved)) else {
         return Err(PathError::Missing("there is no answer whose derivatives could be taken".to_owned()));
     };

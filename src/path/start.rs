@@ -22,16 +22,20 @@ use crate::watch::Watch;
 /// No path makes more pivots than this.
 pub const PIVOTS: usize = 100_000;
 
-/// The contact system, for a command that knows two senses of slip only.
+/// The contact system, for a command that knows two senses of slip only; `instead` says what goes in space.
 ///
 /// # Errors
 /// A bare LCP; in space.
 pub(super) fn plane_system<'a>(
     prepared: &'a Prepared,
     command: &'static str,
+    instead: &str,
 ) -> Result<&'a Arc<ContactSystem>, PathError> {
     let system = prepared.system().ok_or(PathError::Plain(command))?;
-    system.space_refusal(command).map_or(Ok(system), |why| Err(PathError::Missing(why)))
+    match system.space_refusal(command) {
+        None => Ok(system),
+        Some(why) => Err(PathError::Missing(format!("{why}; {instead}"))),
+    }
 }
 
 /// Refuses a target that is no number; −∞ stands for as far down as it goes.

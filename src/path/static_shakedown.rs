@@ -9,7 +9,7 @@ use nalgebra::DVector;
 
 use super::cycle::target;
 use super::stages::{Begin, Moment, follow_factors};
-use super::start::{PathError, plane_system};
+use super::start::PathError;
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
@@ -68,6 +68,9 @@ pub(super) fn units(force: f64, stiffness: f64) -> (f64, f64) {
 /// Why the theorem cannot be asked; `None` where it can.
 fn refusal(problem: &ContactProblem) -> Option<Static> {
     let system = &*problem.system;
+    if system.is_in_space() {
+        return Some(Static::Inapplicable("its linear programme knows slips in the plane only".to_owned()));
+    }
     if system.force_form.is_some() {
         let why = "joints repeat one another, so that contact forces are not unique";
         return Some(Static::Inapplicable(why.to_owned()));
@@ -195,7 +198,6 @@ pub fn static_shakedown<'m>(case: Case<'_>, moments: impl Iterator<Item = &'m Mo
 /// # Errors
 /// See [`super::cycle::cycle`].
 pub fn static_limit(case: Case<'_>, name: &str, [from, to]: [f64; 2]) -> Result<(Option<f64>, Static), PathError> {
-    plane_system(case.prepared, "cycle")?;
     let Some(problem) = present(case) else { return Ok((None, Static::NotAsked)) };
     if let Some(refusal) = refusal(&problem) {
         return Ok((None, refusal));

@@ -107,7 +107,11 @@ pub fn calibrate(
     measured: &[Measurement],
     history: bool,
 ) -> Result<Calibration, PathError> {
-    plane_system(case.prepared, "calibrate")?;
+    plane_system(
+        case.prepared,
+        "calibrate",
+        "`find FRICTION A..B where QUANTITY = VALUE` finds one friction that explains one measurement",
+    )?;
     if measured.len() < groups.len() {
         return Err(PathError::Missing(format!(
             "calibrate: {} cannot tell {} frictions; measure at least as many quantities, or name fewer",

@@ -115,7 +115,7 @@ impl Map {
 /// # Errors
 /// Axes that cannot be varied, an interruption; see [`PathError`].
 pub fn map(case: Case<'_>, axes: [Axis; 2], quantity: Option<&Quantity>) -> Result<Map, PathError> {
-    plane_system(case.prepared, "map")?;
+    plane_system(case.prepared, "map", "`sweep P A..B N Q C..D N` gives the answers on a grid of both")?;
     let along = along(case, &axes)?;
     let across = &axes[1 - along];
     let lines = Lines { case, along: &axes[along].name, range: axes[along].range, across: &across.name };

@@ -30,7 +30,7 @@ use crate::lcp::outcome::RayDirection;
 use crate::lcp::problem::NOISE;
 use crate::lcp::variable::Variable;
 use crate::model::rules::{Covering, Rules};
-use crate::path::cone_step::{PolygonRay, Scheme, Step, Stepper};
+use crate::path::cone_step::{PolygonRay, Scheme, Step, Stepper, behind_slips};
 use crate::path::start::PathError;
 use crate::solve::Prepared;
 use crate::watch::Watch;
@@ -87,6 +87,9 @@ pub(super) fn follow<'a>(
         let why = "a history in space is followed on Coulomb's cone, where directions of slip turn with the motion; \
                    `set cone on` (`solver.cone`: true) first";
         return Err(PathError::Missing(why.to_owned()));
+    }
+    if let Some(refusal) = laws.problem.system.dependence_refusal("stages") {
+        return Err(PathError::Missing(refusal));
     }
     if matches!(begin, Begin::Slips(_)) {
         return Err(PathError::Missing("a history in space begins at the unloaded structure".to_owned()));
@@ -262,7 +265,7 @@ impl SpaceWalk<'_> {
                 report.record(&problem.system, Covering::default())
             }
             None => {
-                let problem = self.stepper.from_slips(problem, &self.z);
+                let problem = behind_slips(problem, &self.z);
                 let (contact, direction, p) = match found {
                     Some(found) => *found,
                     // The run ended in no ray: there is no motion to show.
