@@ -127,41 +127,105 @@ def of_lcp(lcp):
     return problem
 
 
-def of_contact(system, of_kernel):
-    """of_kernel: only what the proof of a motion in the kernel needs"""
-    ids, m, (load,) = system["pairs"], len(system["pairs"]), system["loads"].values()
+def facets(half):
+    """the directions of a polygon from those that are no mirrors: in order around, together a half turn"""
+    half = [tuple(map(Fraction, direction)) for direction in half]
+    around = half + [(-a, -b) for a, b in half]
+    need(len(half) >= 2 and all(cross(d, e) > 0 for d, e in zip(around, around[1:])), "the directions are not in order around")
+    need(all(abs(a * a + b * b - 1) < Fraction(1, 10**15) for a, b in around), "a direction whose length is not 1")
+    return around
+
+
+def cross(d, e):
+    return d[0] * e[1] - d[1] * e[0]
+
+
+def plane(problem, name, c, bound, tangential, z_t):
+    """x+, x- and the slips along t: the words of what a closed pair can do, and two forms that are zero where nothing holds it"""
+    plus, minus, z_t, tangential = f"x+ {name}", f"x- {name}", *z_t, *tangential
+    for reserve, side in ((plus, 1), (minus, -1)):
+        problem.forms[reserve] = [a + side * b for a, b in zip(bound, tangential)]
+    problem.signed |= {plus, minus}
+    return {"stick": ({z_t}, {}), "slip+": ({plus}, {z_t: 1}), "slip-": ({minus}, {z_t: -1})}, {plus, minus}
+
+
+def space(problem, name, c, bound, tangential, z_t):
+    """the same on a polygon: x^k of its facets, turn^k = d_k cross z_t"""
+    count = len(problem.directions)
+    x = lambda k: f"x^{k % count} {name}"
+    for k, d in enumerate(problem.directions):
+        problem.forms[x(k)] = [a + d[0] * b + d[1] * e for a, b, e in zip(bound, *tangential)]
+        problem.signed.add(x(k))
+    for k, d in enumerate(problem.directions[: count // 2]):
+        problem.forms[f"turn^{k} {name}"] = [d[0] * b - d[1] * a for a, b in zip(*(problem.forms[z] for z in z_t))]
+    turn = lambda k: (f"turn^{k % (count // 2)} {name}", 1 if k % count < count // 2 else -1)
+    ways = {"stick": (set(z_t), {})}
+    for k in range(count):
+        ways[f"slip^{k}"] = {x(k), turn(k)[0]}, dict([turn(k - 1)])
+        (here, up), (there, down) = turn(k), turn(k + 1)
+        ways[f"slip^{k}^{(k + 1) % count}"] = {x(k), x(k + 1)}, {here: up, there: -down}
+    return ways, {x(0), x(1)}
+
+
+def of_contact(system, proof):
+    """a motion in the kernel needs no forms, and one on Coulomb's cone has none"""
+    directions = proof.get("directions")
+    ids, m, (load,), tangents = system["pairs"], len(system["pairs"]), system["loads"].values(), system.get("tangents", 1)
+    size = (1 + tangents) * m
     R, kernel, vector = [exact(row) for row in system["stiffness"]], [exact(z) for z in system.get("kernel", [])], exact(load["vector"])
-    need(len(set(ids)) == m and len(R) == 2 * m and all(len(z) == 2 * m for z in R + kernel + [vector]), "the size of the system")
-    need(load["factor"] == 1 and all(R[i][j] == R[j][i] for i in range(2 * m) for j in range(i)), "the load, or R is not symmetric")
+    need(tangents in (1, 2) and len(set(ids)) == m and len(R) == size and all(len(z) == size for z in R + kernel + [vector]), "the size of the system")
+    need(load["factor"] == 1 and all(R[i][j] == R[j][i] for i in range(size) for j in range(i)), "the load, or R is not symmetric")
     friction, cohesion, bound, gaps = (exact(system[key]) for key in ("friction", "cohesion", "bound", "gap"))
-    problem = Problem([f"{word} {name}" for word in ("z_n", "z_t") for name in ids])
+    words = ["t"] if tangents == 1 else ["t1", "t2"]
+    slips = {name: [f"z_{word} {name}" for word in words] for name in ids}
+    problem = Problem([f"z_n {name}" for name in ids] + sum(slips.values(), []))
+    problem.slips, problem.directions = slips, facets(directions) if tangents == 2 and directions is not None else None
     problem.load, problem.kernel, problem.laws = vector, kernel, list(zip(ids, system["law"], friction, map(sum, zip(cohesion, bound))))
     need(len(problem.laws) == m == len(gaps) and min(friction) >= 0, "the laws")
     need(all(law in ("coulomb", "frictionless", "bound") and c >= 0 for _, law, _, c in problem.laws), "a law")
-    if of_kernel:
+    if proof.get("amounts"):
         return problem
     problem.R = stiffness(R, kernel)
+    if tangents == 2 and directions is None:
+        need(proof["claim"] == "collapse", "no directions")
+        return problem
     force = [row + [q - dot(row[:m], gaps)] for row, q in zip(problem.R, vector)]
-    for (name, law, f, c), normal, tangential in zip(problem.laws, force, force[m:]):
-        z_n, z_t, x_n, x_t, plus, minus = (f"{word} {name}" for word in ("z_n", "z_t", "x_n", "x_t", "x+", "x-"))
+    for i, (name, law, f, c) in enumerate(problem.laws):
+        normal, tangential = force[i], force[m + tangents * i : m + tangents * (i + 1)]
+        z_n, x_n, z_t = f"z_n {name}", f"x_n {name}", slips[name]
         problem.forms[x_n] = normal
         if law == "bound":
             problem.zero.add(z_n)
         else:
             problem.signed |= {z_n, x_n}
         if law == "frictionless":
-            problem.forms[x_t] = tangential
-            problem.zero |= {x_t} if any(tangential[:-1]) else {x_t, z_t}
+            for word, slip, row in zip(words, z_t, tangential):
+                problem.forms[f"x_{word} {name}"] = row
+                problem.zero |= {f"x_{word} {name}"} if any(row[:-1]) else {f"x_{word} {name}", slip}
             problem.groups[name] = {"closed": ({z_n}, {}), "open": ({x_n}, {})}
             continue
-        for reserve, side in ((plus, 1), (minus, -1)):
-            problem.forms[reserve] = [f * a + side * b for a, b in zip(normal, tangential)]
-            problem.forms[reserve][-1] += c
-        problem.signed |= {plus, minus}
-        three = lambda word, on: {f"{word}stick": ({on, z_t}, {}), f"{word}slip+": ({on, plus}, {z_t: 1}), f"{word}slip-": ({on, minus}, {z_t: -1})}
-        free = {"open": ({x_n, plus, minus}, {})}
-        problem.groups[name] = three("", z_n) | ({} if law == "bound" else three("open ", x_n) if c else free)
+        bound = [f * a for a in normal]
+        bound[-1] += c
+        ways, held_by_nothing = (plane if tangents == 1 else space)(problem, name, c, bound, tangential, z_t)
+        of = lambda word, on: {word + way: ({on} | zero, signs) for way, (zero, signs) in ways.items()}
+        free = {"open": ({x_n} | held_by_nothing, {})}
+        problem.groups[name] = of("", z_n) | ({} if law == "bound" else of("open ", x_n) if c else free)
     return problem
+
+
+def reach(problem, name, motion, slips):
+    """what counts as |slip| of a pair: in the plane its size, in space a bound of it from above that the proof gives"""
+    z = [motion[slip] for slip in problem.slips[name]]
+    if len(z) == 1:
+        return abs(z[0])
+    most = Fraction(slips[name])
+    if problem.directions is None:  # Coulomb's cone
+        need(most >= 0 and most**2 >= z[0] ** 2 + z[1] ** 2, f"{name} slips farther than it says")
+        return most
+    pairs = zip(problem.directions, problem.directions[1:] + problem.directions[:1])  # z = a d + b e
+    parts = [(cross(z, e) / cross(d, e), cross(d, z) / cross(d, e)) for d, e in pairs]
+    need(any(a >= 0 and b >= 0 and a + b <= most for a, b in parts), f"{name} slips farther than it says")
+    return most
 
 
 def collapse(problem, proof):
@@ -171,10 +235,11 @@ def collapse(problem, proof):
     z = [motion[name] for name in problem.unknowns]
     free = all(x == dot(column, amounts) for x, column in zip(z, zip(*problem.kernel))) if amounts else not any(dot(row, z) for row in problem.R)
     need(free, "the motion costs energy")
+    slips = {name: reach(problem, name, motion, proof.get("slips")) for name in problem.slips}
     for name, law, f, c in problem.laws:
-        part, slip = motion[f"z_n {name}"], abs(motion[f"z_t {name}"])
-        need(part == 0 if law == "bound" else part >= f * slip, f"the motion presses pair {name}")
-    work, bound = -dot(problem.load, z), sum(c * abs(motion[f"z_t {name}"]) for name, law, _, c in problem.laws if law != "frictionless")
+        part, f = motion[f"z_n {name}"], 0 if law == "frictionless" else f
+        need(part == 0 if law == "bound" else part >= f * slips[name], f"the motion presses pair {name}")
+    work, bound = -dot(problem.load, z), sum(c * slips[name] for name, law, _, c in problem.laws if law != "frictionless")
     need((work, bound) == (Fraction(proof["work"]), Fraction(proof["bound"])) and work > bound, "the work or its bound")
     return f"collapse: on this motion the loads do {float(work):.6g}, contact takes at most {float(bound):.6g}; no answer"
 
@@ -182,8 +247,9 @@ def collapse(problem, proof):
 def check(proof, system):
     """the sentence that is proved; raises where it is not"""
     expected = {"answer": {"scheme", "values"}, "answers": {"answers", "tree"}, "collapse": {"motion", "amounts", "work", "bound"}}
-    need(proof["format"] == "stickslip-proof/1" and set(proof) == {"format", "system", "claim"} | expected[proof["claim"]], "another format")
-    problem = of_lcp(system["lcp"]) if "lcp" in system else of_contact(system["contact_system"], bool(proof.get("amounts")))
+    allowed = {"format", "system", "claim"} | expected[proof["claim"]]
+    need(proof["format"] == "stickslip-proof/1" and allowed <= set(proof) <= allowed | {"directions", "slips"}, "another format")
+    problem = of_lcp(system["lcp"]) if "lcp" in system else of_contact(system["contact_system"], proof)
     if proof["claim"] == "collapse":
         return collapse(problem, proof)
     if proof["claim"] == "answer":

@@ -21,10 +21,19 @@ use crate::watch::Quiet;
 
 /// m Coulomb pairs with this R (normals, then tangentials).
 pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
-    let m = stiffness.nrows() / 2;
+    with_tangents(stiffness, 1)
+}
+
+/// m Coulomb pairs in space with this R (normals, then t1 and t2 of each pair).
+pub(crate) fn coulomb_in_space(stiffness: DMatrix<f64>) -> ContactSystem {
+    with_tangents(stiffness, 2)
+}
+
+fn with_tangents(stiffness: DMatrix<f64>, tangents: usize) -> ContactSystem {
+    let m = stiffness.nrows() / (1 + tangents);
     let zero = || Number::Value(0.0);
     ContactSystem {
-        tangents: 1,
+        tangents,
         pairs: (0..m)
             .map(|i| ContactPair {
                 id: format!("c{}", i + 1),
@@ -32,10 +41,10 @@ pub(crate) fn coulomb(stiffness: DMatrix<f64>) -> ContactSystem {
                 position: None,
                 frame: None,
                 joint: 0,
-                tangential: m + i..m + i + 1,
+                tangential: m + tangents * i..m + tangents * (i + 1),
             })
             .collect(),
-        kernel: DMatrix::zeros(2 * m, 0),
+        kernel: DMatrix::zeros((1 + tangents) * m, 0),
         rounded: false,
         corrected: None,
         force_form: None,
@@ -54,7 +63,12 @@ pub(crate) fn plain(system: &ContactSystem, f: f64, load: &[f64]) -> ContactProb
 
 /// Normals last: the default rule.
 pub(crate) fn tangential_first(system: &ContactSystem) -> TieRule {
-    let rows = rows(system, Polygon::PLANE);
+    tangential_first_on(system, Polygon::PLANE)
+}
+
+/// The same on a polygon.
+pub(crate) fn tangential_first_on(system: &ContactSystem, polygon: Polygon) -> TieRule {
+    let rows = rows(system, polygon);
     let normals = rows.iter().filter(|r| r.couple == RowKind::Normal).count();
     TieRule::Lexicographic((normals..rows.len()).chain(0..normals).collect())
 }

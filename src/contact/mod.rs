@@ -17,6 +17,7 @@
 //! ```
 
 pub mod cone;
+pub mod cone_rates;
 pub mod file_data;
 pub mod force_form;
 pub mod full_lcp;

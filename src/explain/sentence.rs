@@ -2,7 +2,7 @@
 
 use super::remedy::told_apart;
 use crate::answer::record::{PivotRecord, Turned, TurnedJoint};
-use crate::contact::polygon::{angle, degrees};
+use crate::contact::polygon::{Polygon, angle, degrees};
 use crate::contact::rows::{Quantity, RowKind};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::ContactSystem;
@@ -19,7 +19,7 @@ pub fn pivot_records(pivots: &[Pivot], contact: &ContactLcp, system: &ContactSys
     for meaning in contact.rows.iter().zip(&contact.swapped).filter(|(_, swapped)| **swapped).map(|(row, _)| row) {
         match meaning.couple {
             RowKind::Normal => schemes.pairs[meaning.pair].open = true,
-            _ => schemes.pairs[meaning.pair].tangential = Tangential::SlipPlus,
+            _ => schemes.pairs[meaning.pair].tangential = Tangential::PLUS,
         }
     }
     pivots
@@ -74,30 +74,30 @@ fn turn(schemes: &mut Schemes, entering: Variable, contact: &ContactLcp, system:
     let scheme = &mut schemes.pairs[meaning.pair];
     let frictionless = !system.pairs[meaning.pair].rubs();
     let closed_word = match () {
-        () if frictionless => "closed",
-        () if !schemes.facets[meaning.pair].is_empty() => "slip",
-        () => scheme.tangential.word(),
+        () if frictionless => "closed".to_owned(),
+        () if !schemes.facets[meaning.pair].is_empty() => "slip".to_owned(),
+        () => scheme.tangential.word(Polygon::PLANE),
     };
     let (joint, from, to) = match (meaning.couple, released) {
         (RowKind::Normal, true) => {
             scheme.open = true;
-            (TurnedJoint::Normal, closed_word, "open")
+            (TurnedJoint::Normal, closed_word, "open".to_owned())
         }
         (RowKind::Normal, false) => {
             scheme.open = false;
-            (TurnedJoint::Normal, "open", closed_word)
+            (TurnedJoint::Normal, "open".to_owned(), closed_word)
         }
         (couple, released) => {
-            let from = scheme.tangential.word();
+            let from = scheme.tangential.word(Polygon::PLANE);
             scheme.tangential = match (couple, released) {
-                (RowKind::PLUS, true) => Tangential::SlipPlus,
-                (RowKind::Facet(_), true) => Tangential::SlipMinus,
+                (RowKind::PLUS, true) => Tangential::PLUS,
+                (RowKind::Facet(_), true) => Tangential::MINUS,
                 _ => Tangential::Stick,
             };
-            (TurnedJoint::Tangential, from, scheme.tangential.word())
+            (TurnedJoint::Tangential, from, scheme.tangential.word(Polygon::PLANE))
         }
     };
-    Some(Turned { pair: system.pairs[meaning.pair].id.clone(), joint, from: from.to_owned(), to: to.to_owned() })
+    Some(Turned { pair: system.pairs[meaning.pair].id.clone(), joint, from, to })
 }
 
 struct Sentence<'a> {

@@ -5,6 +5,7 @@ use num_rational::BigRational;
 use serde_json::{Map, Value, json};
 
 use crate::contact::law::PairLaw;
+use crate::lcp::exact::dyadic::rational;
 use crate::model::scenario::FORMAT;
 use crate::solve::prove::forms::Forms;
 use crate::solve::prove::system::{ProvedContact, ProvedSystem};
@@ -40,6 +41,9 @@ fn of_contact(contact: &ProvedContact) -> Value {
         "stiffness": rows(&contact.stiffness),
         "loads": {"all": {"factor": 1.0, "vector": contact.load.as_slice()}},
     });
+    if contact.tangents > 1 {
+        value["tangents"] = contact.tangents.into();
+    }
     if !contact.kernel.is_empty() {
         value["kernel"] = contact.kernel.iter().map(|motion| json!(motion.as_slice())).collect();
     }
@@ -51,11 +55,15 @@ pub fn proof(proof: &Proof, system: &str) -> Value {
     let forms = &proof.forms;
     let mut value = json!({"format": "stickslip-proof/1", "system": Hash::of(system).long()});
     let mut put = |key: &str, entry: Value| value[key] = entry;
+    if let Some(polygon) = proof.polygon() {
+        let direction = |facet| polygon.direction(facet).iter().map(|part| fraction(&rational(*part))).collect::<Value>();
+        put("directions", (0..polygon.half()).map(direction).collect());
+    }
     match &proof.claim {
         Claim::Answer(z) => {
             let values = forms.values(z);
             let words = forms.scheme(&values).unwrap_or_default();
-            let scheme = forms.groups.iter().zip(words).map(|(group, word)| (group.name.clone(), word.into()));
+            let scheme = forms.groups.iter().zip(words).map(|(group, word)| (group.name.clone(), Value::from(word)));
             put("claim", "answer".into());
             put("scheme", Value::Object(scheme.collect()));
             put("values", named(forms, &values));
@@ -68,6 +76,12 @@ pub fn proof(proof: &Proof, system: &str) -> Value {
         Claim::Collapse(found) => {
             put("claim", "collapse".into());
             put("motion", named(forms, &found.motion));
+            if let ProvedSystem::Contact(contact) = &proof.system
+                && contact.tangents > 1
+            {
+                let slips = contact.ids.iter().zip(&found.slips);
+                put("slips", Value::Object(slips.map(|(id, slip)| (id.clone(), fraction(slip))).collect()));
+            }
             put("amounts", found.amounts.iter().map(fraction).collect());
             put("work", fraction(&found.work));
             put("bound", fraction(&found.bound));
@@ -94,7 +108,7 @@ fn tree(forms: &Forms, node: &Tree) -> Value {
             let group = &forms.groups[*group];
             let branches = group.branches.iter().zip(below);
             let branches: Map<_, _> =
-                branches.map(|(branch, child)| (branch.name.to_owned(), tree(forms, child))).collect();
+                branches.map(|(branch, child)| (branch.name.clone(), tree(forms, child))).collect();
             json!({"of": group.name, "branches": branches})
         }
         Tree::Cut(factors) => json!({"cut": sum(factors)}),

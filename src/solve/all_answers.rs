@@ -15,9 +15,8 @@ use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules, Plain
 use crate::answer::record::PairDirection;
 use crate::contact::lcp::contact_lcp;
 use crate::contact::problem::ContactProblem;
-use crate::contact::rows::RowKind;
 use crate::contact::schemes::enumerate::{Continuum as ContactContinuum, EnumeratedAnswer, enumerate};
-use crate::contact::schemes::scheme::{PairScheme, Tangential};
+use crate::contact::schemes::scheme::PairScheme;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::model::parameter::ParameterValues;
@@ -79,11 +78,16 @@ impl AllAnswers {
 }
 
 impl Prepared {
-    /// Every answer for these values.
+    /// Every answer for these values; in space every answer on the polygon of these rules.
     ///
     /// # Errors
     /// Too many pairs or rows; a covering that does not fit the numbers. Stopped, what was found until then is returned as incomplete.
-    pub fn all_answers(&self, values: &ParameterValues, watch: &dyn Watch) -> Result<AllAnswers, QuestionError> {
+    pub fn all_answers(
+        &self,
+        values: &ParameterValues,
+        rules: Rules,
+        watch: &dyn Watch,
+    ) -> Result<AllAnswers, QuestionError> {
         let system = match &*self.geometry {
             Geometry::Plain { lcp, q, .. } => {
                 let q = q.iter().map(|number| number.value(values)).collect::<Vec<_>>().into();
@@ -91,11 +95,11 @@ impl Prepared {
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => system,
         };
-        if let Some(refusal) = system.refusal("enumerate") {
+        if let Some(refusal) = system.dependence_refusal("enumerate") {
             return Err(QuestionError::Refused(refusal));
         }
         too_many("contact pairs", system.pair_count(), MOST_PAIRS)?;
-        let problem = contact_problem(system, &factors(self, values), values);
+        let problem = contact_problem(system, &factors(self, values), values).under(Rules { cone: false, ..rules });
         let mut steps = 0u64;
         let found = enumerate(&problem, &mut |progress| {
             steps += 1;
@@ -157,26 +161,24 @@ impl Prepared {
         let system = &*problem.system;
         let contact = contact_lcp(problem, Covering::default())?;
         let mut z = vec![0.0; contact.rows.len()];
+        let polygon = problem.polygon;
         for (value, row) in z.iter_mut().zip(&contact.rows) {
-            let tangential = system.pairs[row.pair].plane_tangential();
-            let slip = tangential.map_or(0.0, |joint| candidate.state.z[joint]);
             // What the scheme holds is zero, not the rounding of a linear program.
             let scheme = candidate.schemes.first().map(|scheme| scheme[row.pair]);
-            let free = |plus: bool| {
-                scheme.is_none_or(|scheme| match scheme.tangential {
-                    // Without cohesion an open pair slips either way.
-                    _ if scheme == PairScheme::OPEN => true,
-                    Tangential::Stick => false,
-                    Tangential::SlipPlus => plus,
-                    Tangential::SlipMinus => !plus,
-                })
-            };
-            *value = match row.couple {
-                RowKind::Normal if scheme.is_some_and(|scheme| !scheme.open) => 0.0,
-                RowKind::Normal => candidate.state.z[row.pair].max(0.0),
-                RowKind::PLUS if free(true) => slip.max(0.0),
-                RowKind::Facet(_) if free(false) => (-slip).max(0.0),
-                RowKind::Facet(_) => 0.0,
+            *value = match row.couple.facet() {
+                None if scheme.is_some_and(|scheme| !scheme.open) => 0.0,
+                None => candidate.state.z[row.pair].max(0.0),
+                Some(facet) => {
+                    let free = scheme.is_none_or(|scheme| {
+                        // Without cohesion an open pair slips any way.
+                        let is_loose = scheme == PairScheme::OPEN;
+                        is_loose || scheme.tangential.facets(polygon).contains(&facet)
+                    });
+                    let joints = system.pairs[row.pair].tangential.clone();
+                    let mut slip = [0.0; 2];
+                    slip.iter_mut().zip(joints).for_each(|(slip, joint)| *slip = candidate.state.z[joint]);
+                    if free { polygon.slips(slip)[facet] } else { 0.0 }
+                }
             } / contact.length_unit;
         }
         let point = Point { w: vec![0.0; z.len()], z, p: 0.0 };

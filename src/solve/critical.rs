@@ -6,6 +6,7 @@ use super::problem::{contact_problem, factors};
 use crate::contact::schemes::critical::{CriticalFriction, critical_friction};
 use crate::model::jet::Dependence;
 use crate::model::parameter::ParameterValues;
+use crate::model::rules::Rules;
 use crate::watch::Watch;
 
 /// Blocks drawn where all of them are too many.
@@ -14,7 +15,8 @@ const SAMPLES: u64 = 20_000;
 const SEED: u64 = 1;
 
 impl Prepared {
-    /// The value of a friction parameter above which more than one answer is possible for some load.
+    /// The value of a friction parameter above which more than one answer is possible for some load; in space on the polygon
+    /// of these rules.
     ///
     /// # Errors
     /// No contact pairs; no Coulomb pair has this friction; stopped.
@@ -22,13 +24,14 @@ impl Prepared {
         &self,
         values: &ParameterValues,
         parameter: &str,
+        rules: Rules,
         watch: &dyn Watch,
     ) -> Result<CriticalFriction, QuestionError> {
         let refused = |text: String| Err(QuestionError::Refused(text));
         let Some(system) = self.system() else {
             return refused("a bare LCP has no friction".to_owned());
         };
-        if let Some(refusal) = system.refusal("critical") {
+        if let Some(refusal) = system.dependence_refusal("critical") {
             return refused(refusal);
         }
         let along = values.along(parameter);
@@ -58,7 +61,8 @@ impl Prepared {
         if friction(0.0).iter().any(|f| *f < 0.0) {
             return refused(format!("at {parameter} = 0 a friction is negative: `critical` goes up from 0"));
         }
-        let found = critical_friction(system, &friction, SAMPLES, SEED, &mut |examined| {
+        let polygon = contact_problem(system, &factors, values).under(rules).polygon;
+        let found = critical_friction(system, polygon, &friction, (SAMPLES, SEED), &mut |examined| {
             if examined.is_multiple_of(1024) {
                 watch.progress(&format!("block {examined}"), 0.0);
             }

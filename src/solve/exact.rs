@@ -8,8 +8,8 @@ use super::prepared::Prepared;
 use super::state::{RunData, Solved};
 use crate::answer::attempt::AttemptEngine;
 use crate::answer::pairs::{JointState, pair_states};
-use crate::answer::record::{OutcomeKind, State};
-use crate::contact::rows::RowKind;
+use crate::answer::record::{OutcomeKind, PairState, State};
+use crate::contact::law::PairLaw;
 use crate::contact::schemes::exact_check::{ExactCheck, Finding, exact_check};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::watch::{Budget, Watch};
@@ -30,6 +30,10 @@ impl Prepared {
     /// A state that failed its check has the right working scheme where that holds in exact arithmetic: with great
     /// stiffness contrasts no elimination in f64 gives its z. The exact z, rounded once, is then checked as any other.
     pub(super) fn prove_after_all(&self, solved: &mut Solved, watch: &dyn Watch) {
+        // In space the scheme is the polygon's, not that of the answer on the cone.
+        if self.system().is_some_and(|system| system.is_in_space()) {
+            return;
+        }
         // Only figures of the size of rounding are worth the proof.
         if solved.answer.pairs.len() > EXACT_PAIRS || !solved.answer.check.is_within(EXCUSABLE) {
             return;
@@ -93,7 +97,7 @@ impl Prepared {
                 })
             }
             (RunData::Contact { problem, .. }, Some(system)) => {
-                if let Some(refusal) = system.refusal("check exact") {
+                if let Some(refusal) = system.dependence_refusal("check exact") {
                     return Err(QuestionError::Refused(refusal));
                 }
                 let scheme = final_scheme(solved);
@@ -113,48 +117,46 @@ impl Prepared {
     }
 }
 
-/// The working scheme at the end: from the last basis, or from the states where there are no pivots.
+/// The working scheme at the end: from the last basis, or from the states where there are no pivots. In space that of the
+/// polygon, from which Newton's method goes on to the cone.
 pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
-    let mut schemes: Vec<PairScheme> = solved
-        .answer
-        .pairs
-        .iter()
-        .map(|pair| match (pair.state, pair.held) {
-            (State::Open, None) => PairScheme::OPEN,
-            (State::Open, Some(held)) => PairScheme {
-                open: true,
-                tangential: match held {
-                    State::SlipPlus => Tangential::SlipPlus,
-                    State::SlipMinus => Tangential::SlipMinus,
-                    _ => Tangential::Stick,
-                },
-            },
-            (State::SlipPlus, _) => PairScheme::SLIP_PLUS,
-            (State::SlipMinus, _) => PairScheme::SLIP_MINUS,
-            // A slip in space is none of these; who asks for schemes refuses it.
-            (State::Stick | State::Closed | State::Slip, _) => PairScheme::STICK,
-        })
-        .collect();
-    let RunData::Contact { contact, problem, pivots, .. } = &solved.run else {
-        return schemes;
+    let RunData::Contact { contact, problem, pivots, last } = &solved.run else {
+        return solved.answer.pairs.iter().map(scheme_of).collect();
     };
-    if pivots.is_empty() {
-        return schemes;
-    }
-    schemes.fill(PairScheme::STICK);
-    for row in pivots.basis().z {
+    let polygon = problem.polygon;
+    let mut facets: Vec<Vec<usize>> = vec![Vec::new(); problem.laws.len()];
+    let mut open = vec![false; problem.laws.len()];
+    let mut put = |row: usize| {
         let meaning = contact.rows[row];
-        let scheme = &mut schemes[meaning.pair];
-        match meaning.couple {
-            RowKind::Normal => scheme.open = true,
-            RowKind::PLUS => scheme.tangential = Tangential::SlipPlus,
-            RowKind::Facet(_) => scheme.tangential = Tangential::SlipMinus,
+        match meaning.couple.facet() {
+            None => open[meaning.pair] = true,
+            Some(facet) => facets[meaning.pair].push(facet),
         }
+    };
+    if !pivots.is_empty() {
+        pivots.basis().z.into_iter().for_each(&mut put);
+    } else if problem.system.is_in_space() {
+        (0..last.z.len()).filter(|&row| last.z[row] > 0.0).for_each(&mut put);
+    } else {
+        return solved.answer.pairs.iter().map(scheme_of).collect();
     }
-    for (i, scheme) in schemes.iter_mut().enumerate() {
-        if scheme.open && problem.laws[i].fixed_bound() == 0.0 {
-            *scheme = PairScheme::OPEN;
-        }
+    let scheme = |((open, facets), law): ((&bool, &Vec<usize>), &PairLaw)| match *open && law.fixed_bound() == 0.0 {
+        true => PairScheme::OPEN,
+        false => PairScheme { open: *open, tangential: Tangential::along(facets, polygon) },
+    };
+    open.iter().zip(&facets).zip(&problem.laws).map(scheme).collect()
+}
+
+/// The working scheme of a pair in the plane as its state is shown.
+fn scheme_of(pair: &PairState) -> PairScheme {
+    let slip = |state: Option<State>| match state {
+        Some(State::SlipPlus) => Tangential::PLUS,
+        Some(State::SlipMinus) => Tangential::MINUS,
+        _ => Tangential::Stick,
+    };
+    match (pair.state, pair.held) {
+        (State::Open, None) => PairScheme::OPEN,
+        (State::Open, held) => PairScheme { open: true, tangential: slip(held) },
+        (state, _) => PairScheme { open: false, tangential: slip(Some(state)) },
     }
-    schemes
 }

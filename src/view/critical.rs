@@ -4,20 +4,35 @@ use std::io::{self, Write};
 
 use super::style::{Role, Style};
 use crate::contact::schemes::critical::{Coverage, CriticalFriction};
-use crate::contact::schemes::scheme::PairScheme;
+use crate::contact::polygon::{Polygon, angle, degrees};
+use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::text::number::short;
 
 /// "c1 open, c2 slip+".
-pub fn scheme_words(ids: &[&str], scheme: &[PairScheme]) -> String {
+pub fn scheme_words(ids: &[&str], scheme: &[PairScheme], polygon: Polygon) -> String {
     let words: Vec<String> = ids
         .iter()
         .zip(scheme)
         .map(|(id, scheme)| {
-            let state = if scheme.open { "open" } else { scheme.tangential.word() };
+            let state = if scheme.open { "open".to_owned() } else { slip_words(scheme.tangential, polygon) };
             format!("{id} {state}")
         })
         .collect();
     words.join(", ")
+}
+
+/// "stick", "slip+"; in space "slip along 45°", "slip between 45° and 90°".
+pub fn slip_words(state: Tangential, polygon: Polygon) -> String {
+    if polygon == Polygon::PLANE {
+        return state.word(polygon);
+    }
+    let directions: Vec<String> =
+        state.facets(polygon).into_iter().map(|facet| degrees(angle(polygon.direction(facet)))).collect();
+    match &directions[..] {
+        [] => state.word(polygon),
+        [one] => format!("slip along {one}"),
+        [first, second, ..] => format!("slip between {first} and {second}"),
+    }
 }
 
 /// The finding in a sentence.
@@ -25,7 +40,7 @@ pub fn sentence(parameter: &str, found: &CriticalFriction, ids: &[&str]) -> Stri
     let scheme = found
         .scheme
         .as_ref()
-        .map_or(String::new(), |scheme| format!(" (working scheme {})", scheme_words(ids, scheme)));
+        .map_or(String::new(), |scheme| format!(" (working scheme {})", scheme_words(ids, scheme, found.polygon)));
     match (found.value, found.coverage) {
         (Some(value), Coverage::Exact) if found.singular > 0 => format!(
             "{parameter} up to {}: no working scheme loses its uniqueness, nothing is said of the singular ones; above it, more \
@@ -73,7 +88,14 @@ pub fn write(
         String::new()
     };
     let how = format!("{} determinants examined{singular}", found.examined);
-    for text in [sentence(parameter, found, ids), how] {
+    let of = (found.polygon != Polygon::PLANE).then(|| {
+        format!(
+            "this is said of the polygon of {} facets; of the cone itself it is an estimate (`set facets`: how it changes \
+             with K)",
+            found.polygon.facets()
+        )
+    });
+    for text in [sentence(parameter, found, ids), how].into_iter().chain(of) {
         style.paragraph(out, Role::Plain, &text)?;
     }
     Ok(())

@@ -3,19 +3,26 @@
 use std::io::{self, Write};
 
 use super::style::{Role, Style};
-use crate::contact::schemes::exact_check::{ExactSign, Finding};
+use crate::contact::polygon::{Polygon, degrees};
+use crate::contact::schemes::exact_check::{ExactCheck, ExactSign, Finding};
 use crate::solve::exact::Exactly;
 use crate::text::number::short;
 
 fn signs(signs: &[ExactSign]) -> String {
     let words: Vec<String> =
-        signs.iter().map(|sign| format!("{}[{}] = {}", sign.quantity.name(), sign.id, short(sign.value))).collect();
+        signs.iter().map(|sign| format!("{} = {}", sign.name, short(sign.value))).collect();
     words.join(", ")
 }
 
 /// The finding in sentences, and whether it is good.
 pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
     match check {
+        Exactly::Contact(check) if check.polygon != Polygon::PLANE => {
+            let plane = ExactCheck { polygon: Polygon::PLANE, ..check.clone() };
+            let (role, mut lines) = sentences(&Exactly::Contact(plane), names);
+            lines.push(checked_polygon(check.polygon));
+            (role, lines)
+        }
         Exactly::Contact(check) => match &check.finding {
             Finding::Proved { zeros } => {
                 let mut lines = vec![format!(
@@ -23,9 +30,8 @@ pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
                     check.released, check.signs
                 )];
                 if !zeros.is_empty() {
-                    let ids: Vec<String> =
-                        zeros.iter().map(|sign| format!("{}[{}]", sign.quantity.name(), sign.id)).collect();
-                    lines.push(format!("exactly on a limit: {}", ids.join(", ")));
+                    let names: Vec<&str> = zeros.iter().map(|sign| sign.name.as_str()).collect();
+                    lines.push(format!("exactly on a limit: {}", names.join(", ")));
                 }
                 (Role::Good, lines)
             }
@@ -72,6 +78,20 @@ pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
             (Role::Bad, vec![format!("refuted in exact arithmetic: {}", bad.join(", "))])
         }
     }
+}
+
+/// What friction was in an exact check in space.
+fn checked_polygon(polygon: Polygon) -> String {
+    let turned = match polygon.turn() {
+        0.0 => String::new(),
+        turn => format!(" turned by {}", degrees(turn.to_degrees())),
+    };
+    format!(
+        "this is the working scheme on the polygon of {} facets{turned}, each direction taken as the fractions that its \
+         components are stored as; the answer on the cone that Newton's method goes on to is no fraction: `check` has its \
+         figures",
+        polygon.facets()
+    )
 }
 
 /// Writes the finding.

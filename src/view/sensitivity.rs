@@ -22,16 +22,25 @@ pub fn write(out: &mut dyn Write, sensitivity: &Sensitivity, parameter: Option<&
             writeln!(out, "nothing: the pairs do not depend on it here")?;
             continue;
         }
-        let mut table = Table::new(vec![
-            Column::words("pair"),
-            Column::numbers("dx_n", None).of(1),
-            Column::numbers("dx_τ", None).of(1),
-            Column::numbers("dz_n", None).of(2).droppable(1),
-            Column::numbers("dz_τ", None).of(2),
-        ]);
+        let in_space = rate.pairs.iter().any(|pair| pair.space.is_some());
+        let along: &[[&str; 2]] = if in_space { &[["dx_t1", "dx_t2"], ["dz_t1", "dz_t2"]] } else { &[] };
+        let [friction, slip] = match along {
+            [friction, slip] => [friction.to_vec(), slip.to_vec()],
+            _ => [vec!["dx_τ"], vec!["dz_τ"]],
+        };
+        let mut columns = vec![Column::words("pair"), Column::numbers("dx_n", None).of(1)];
+        columns.extend(friction.into_iter().map(|head| Column::numbers(head, None).of(1)));
+        columns.push(Column::numbers("dz_n", None).of(2).droppable(1));
+        columns.extend(slip.into_iter().map(|head| Column::numbers(head, None).of(2)));
+        let mut table = Table::new(columns);
         for pair in &rate.pairs {
             let mut cells = vec![Cell::from(pair.pair.as_str())];
-            cells.extend([pair.x_n, pair.x_t, pair.z_n, pair.z_t].map(Cell::number));
+            match pair.space {
+                None => cells.extend([pair.x_n, pair.x_t, pair.z_n, pair.z_t].map(Cell::number)),
+                Some([[x1, x2], [z1, z2]]) => {
+                    cells.extend([pair.x_n, x1, x2, pair.z_n, z1, z2].map(Cell::number));
+                }
+            }
             table.rows.push(Row::new(cells));
         }
         table.write(out, style)?;

@@ -22,10 +22,10 @@ use stickslip::watch::Quiet;
 use super::find::{report, session};
 
 /// The texts of a proof and of its system.
-type Texts = (String, String);
+pub(super) type Texts = (String, String);
 
 /// What `examples/check_proof.py` says of each, in one run of Python.
-fn checked(cases: &[Texts]) -> Vec<Result<String, String>> {
+pub(super) fn checked(cases: &[Texts]) -> Vec<Result<String, String>> {
     const DRIVER: &str = "
 import json, sys
 import check_proof
@@ -63,7 +63,7 @@ for line in sys.stdin:
 }
 
 /// Runs `prove` with these words before the file.
-fn proved(session: &mut Session, words: &str, folder: &Path) -> Result<(Value, Texts), String> {
+pub(super) fn proved(session: &mut Session, words: &str, folder: &Path) -> Result<(Value, Texts), String> {
     let path = folder.join("proof.json");
     let said = report(session, &format!("prove {words} {}", path.display()))?;
     let system = fs::read_to_string(folder.join("proof.system.json")).unwrap();
@@ -71,8 +71,8 @@ fn proved(session: &mut Session, words: &str, folder: &Path) -> Result<(Value, T
 }
 
 /// A contact system of `m` pairs with short numbers: pairs of every law, `loose` motions without energy.
-fn contact(random: &mut ChaCha8Rng, m: usize, loose: usize) -> Value {
-    let k = 2 * m;
+pub(super) fn contact(random: &mut ChaCha8Rng, (m, tangents): (usize, usize), loose: usize) -> Value {
+    let k = (1 + tangents) * m;
     let rank = k - loose.min(k - 1);
     let factor: Vec<Vec<i32>> = (0..k).map(|_| (0..rank).map(|_| random.random_range(-3..=3)).collect()).collect();
     let entry = |i: usize, j: usize| factor[i].iter().zip(&factor[j]).map(|(a, b)| a * b).sum::<i32>();
@@ -95,6 +95,9 @@ fn contact(random: &mut ChaCha8Rng, m: usize, loose: usize) -> Value {
         system["law"].as_array_mut().unwrap().push(law.into());
         entries.into_iter().for_each(|(key, number)| system[key].as_array_mut().unwrap().push(number.into()));
     }
+    if tangents == 2 {
+        system["tangents"] = 2.into();
+    }
     json!({"format": "stickslip/1", "title": "t", "contact_system": system})
 }
 
@@ -105,7 +108,7 @@ fn lcp(random: &mut ChaCha8Rng, n: usize) -> Value {
     json!({"format": "stickslip/1", "title": "t", "lcp": {"M": matrix, "q": q}})
 }
 
-fn of(scenario: &Value) -> Option<Session> {
+pub(super) fn of(scenario: &Value) -> Option<Session> {
     Session::new(load_text("case", &scenario.to_string(), None).ok()?, &Quiet).ok()
 }
 
@@ -117,7 +120,7 @@ fn random_proofs(seed: u64, count: usize) -> Vec<(Value, Texts)> {
     for case in 0..count {
         let scenario = match case % 5 {
             0 | 1 => lcp(&mut random, 1 + case % 4),
-            other => contact(&mut random, 1 + case % 3, other - 2),
+            other => contact(&mut random, (1 + case % 3, 1), other - 2),
         };
         let Some(mut session) = of(&scenario) else { continue };
         for words in ["", "all"] {
@@ -155,7 +158,7 @@ fn every_proof_of_a_random_problem_passes() {
 }
 
 /// λ = R (z − (g, 0)) + load in rationals, straight from the system file.
-fn forces(system: &Value, z: &[BigRational]) -> Vec<BigRational> {
+pub(super) fn forces(system: &Value, z: &[BigRational]) -> Vec<BigRational> {
     let number = |value: &Value| rational(value.as_f64().unwrap());
     let gaps = system["gap"].as_array().unwrap();
     let moved: Vec<BigRational> =
@@ -277,7 +280,7 @@ fn still_true(original: &Value, altered: &str, system: &str) -> bool {
 }
 
 /// The text with one character of a number, a sign or a word changed, or two entries exchanged.
-fn altered(text: &str, random: &mut ChaCha8Rng) -> String {
+pub(super) fn altered(text: &str, random: &mut ChaCha8Rng) -> String {
     let mut value: Value = serde_json::from_str(text).unwrap();
     if random.random_bool(0.2) {
         let mut places = Vec::new();

@@ -89,16 +89,32 @@ impl Ball {
 pub(crate) type Row = Vec<Ball>;
 
 /// Largest entry of a row.
-pub(crate) fn size(row: &[Ball]) -> f64 {
+fn size(row: &[Ball]) -> f64 {
     row.iter().fold(f64::MIN_POSITIVE, |largest, entry| largest.max(entry.middle.abs()))
 }
 
-/// The displacement of `column` from an equation; `None` where its coefficient may be zero.
-pub(crate) fn solved(equation: &[Ball], column: usize) -> Option<Row> {
-    let pivot = equation[column].negative();
-    let mut row: Row = equation.iter().map(|entry| entry.over(pivot)).collect::<Option<_>>()?;
-    row[column] = Ball::ZERO;
-    Some(row)
+/// The displacements of `columns` from as many equations, each in terms of the others, by elimination with the relatively
+/// largest pivot; `None` where a pivot may be zero.
+pub(crate) fn eliminated(mut equations: Vec<Row>, columns: &[usize]) -> Option<Vec<Row>> {
+    let mut solved: Vec<Option<Row>> = vec![None; columns.len()];
+    for _ in 0..columns.len() {
+        let relative = |row: &Row, at: usize| row[columns[at]].middle.abs() / size(row);
+        let open = || (0..columns.len()).filter(|at| solved[*at].is_none());
+        let candidates = (0..equations.len()).flat_map(|row| open().map(move |at| (row, at)));
+        let (row, at) = candidates.max_by(|a, b| {
+            let (left, right) = (relative(&equations[a.0], a.1), relative(&equations[b.0], b.1));
+            left.total_cmp(&right).then(b.cmp(a))
+        })?;
+        let pivot = equations[row][columns[at]].negative();
+        let mut own: Row = equations.swap_remove(row).iter().map(|entry| entry.over(pivot)).collect::<Option<_>>()?;
+        own[columns[at]] = Ball::ZERO;
+        for row in equations.iter_mut().chain(solved.iter_mut().flatten()) {
+            let factor = std::mem::replace(&mut row[columns[at]], Ball::ZERO);
+            row.iter_mut().zip(&own).for_each(|(entry, own)| *entry = entry.plus(factor.times(*own)));
+        }
+        solved[at] = Some(own);
+    }
+    solved.into_iter().collect()
 }
 
 #[cfg(test)]

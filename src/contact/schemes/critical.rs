@@ -2,8 +2,9 @@
 //!
 //! For every choice of states (open O, slip S with its sign σ, else stick) the block with rows R_n (O), R_τ (O), R_τ +
 //! σ f R_n (S) and columns z_n (O), z_τ (O ∪ S) must keep a positive determinant. It is a polynomial in the parameter;
-//! its roots are eigenvalues. Exact search over all choices up to [`SEARCHED_PAIRS`] pairs, sampled beyond. One pair:
-//! f = R_ττ / |R_nτ| (Klarbring 1990).
+//! its roots are eigenvalues. Exact search over all choices up to [`SEARCHED`] of them, those of 8 pairs in the plane, sampled beyond. One pair:
+//! f = R_ττ / |R_nτ| (Klarbring 1990). In space a pair slips along a facet d_k of the friction polygon, with the row
+//! d_k·R_τ + f R_n and the column d_k, or between two, with both.
 
 use std::ops::ControlFlow;
 
@@ -12,11 +13,12 @@ use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use crate::contact::polygon::Polygon;
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::contact::system::{ContactPair, ContactSystem};
 
-/// Most pairs for which all choices of states are examined.
-pub const SEARCHED_PAIRS: usize = 8;
+/// Most choices of states that are all examined: those of 8 pairs in the plane.
+pub const SEARCHED: u64 = 1 << 16;
 /// Smallest over largest pivot (R scaled to unit diagonal) below which a block counts as singular.
 const SINGULAR: f64 = 1e-10;
 /// Entries of R, scaled to unit diagonal, up to which a coupling of two joints is rounding of the condensation: as a
@@ -45,6 +47,8 @@ pub struct CriticalFriction {
     /// Smallest parameter at which a block's determinant changes sign; `None`: no such block was found (with
     /// [`Coverage::Sampled`]: no counter-example found). When sampled, a value is an upper bound.
     pub value: Option<f64>,
+    /// The directions of friction that it was looked for with.
+    pub polygon: Polygon,
     /// The responsible working scheme.
     pub scheme: Option<Vec<PairScheme>>,
     /// See [`Coverage`].
@@ -66,23 +70,24 @@ enum Root {
 
 /// Smallest parameter s ≥ 0 at which uniqueness may end. `friction` gives f of every pair for a parameter value; it must
 /// be affine in it (each f is the parameter, a multiple of it, or a constant). Only the f of pairs that open are read.
-/// Up to [`SEARCHED_PAIRS`] pairs all choices are examined, beyond `samples` blocks drawn with `seed`. `observer` hears the
+/// Up to [`SEARCHED`] all choices are examined, beyond that so many blocks drawn with a seed. `observer` hears the
 /// number of blocks examined and may stop the search.
 pub fn critical_friction(
     system: &ContactSystem,
+    polygon: Polygon,
     friction: &dyn Fn(f64) -> Vec<f64>,
-    samples: u64,
-    seed: u64,
+    (samples, seed): (u64, u64),
     observer: &mut dyn FnMut(u64) -> ControlFlow<()>,
 ) -> CriticalFriction {
     let m = system.pair_count();
-    let exact = m <= SEARCHED_PAIRS;
-    let mut search = Search::new(system, friction, observer);
+    let mut search = Search::new(system, polygon, friction, observer);
+    let exact = search.choices.iter().fold(1, |all: u64, of| all.saturating_mul(of.len() as u64)) <= SEARCHED;
     let ended = if exact { search.all(&mut Vec::with_capacity(m)) } else { search.sample(samples, seed) };
     let complete = ended.is_continue();
     let examined = search.examined;
     CriticalFriction {
         value: search.best.as_ref().map(|best| best.0),
+        polygon,
         scheme: search.best.map(|best| best.1),
         coverage: if exact { Coverage::Exact } else { Coverage::Sampled { seed, count: examined } },
         examined,
@@ -92,21 +97,35 @@ pub fn critical_friction(
 }
 
 /// The states of a pair. The sign of a slip without friction, or under a known bound, does not matter.
-fn choices(pair: &ContactPair, is_smooth: bool) -> Vec<PairScheme> {
-    let slip = PairScheme::SLIP_PLUS;
-    match pair.plane_tangential() {
-        None => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
-        Some(_) if pair.law.is_bilateral() => vec![PairScheme::STICK, slip],
-        Some(_) if is_smooth => vec![PairScheme::STICK, slip, PairScheme::OPEN],
-        Some(_) => vec![PairScheme::STICK, PairScheme::OPEN, slip, PairScheme::SLIP_MINUS],
+fn choices(pair: &ContactPair, polygon: Polygon, is_smooth: bool) -> Vec<PairScheme> {
+    let half = if is_smooth || pair.law.is_bilateral() { polygon.half() } else { polygon.facets() };
+    let slips = Tangential::all(polygon).into_iter().filter(|state| match state {
+        Tangential::Stick => false,
+        Tangential::Slip(facet) | Tangential::Between(facet) => usize::from(*facet) < half,
+    });
+    let slips = slips.map(|tangential| PairScheme { open: false, tangential });
+    match pair.rubs() {
+        false => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
+        true if pair.law.is_bilateral() => [PairScheme::STICK].into_iter().chain(slips).collect(),
+        true => [PairScheme::STICK, PairScheme::OPEN].into_iter().chain(slips).collect(),
     }
+}
+
+/// A row of a block, scaled to unit length over joints scaled to R_ii = 1, and the column beside it.
+struct BlockRow {
+    /// Components over the joints.
+    parts: Vec<(usize, f64)>,
+    /// The pair whose friction acts in the row, and 1 over the length of the row before it was scaled.
+    friction: Option<(usize, f64)>,
 }
 
 struct Search<'a> {
     system: &'a ContactSystem,
-    /// R scaled to unit diagonal.
+    polygon: Polygon,
+    /// √R_ii, and R scaled to unit diagonal.
+    root: Vec<f64>,
     scaled: DMatrix<f64>,
-    /// f_i √R_nn / √R_ττ at parameter 0, and its growth per unit of the parameter.
+    /// f_i √R_nn at parameter 0, and its growth per unit of the parameter.
     base: Vec<f64>,
     growth: Vec<f64>,
     choices: Vec<Vec<PairScheme>>,
@@ -119,6 +138,7 @@ struct Search<'a> {
 impl<'a> Search<'a> {
     fn new(
         system: &'a ContactSystem,
+        polygon: Polygon,
         friction: &dyn Fn(f64) -> Vec<f64>,
         observer: &'a mut dyn FnMut(u64) -> ControlFlow<()>,
     ) -> Self {
@@ -136,17 +156,16 @@ impl<'a> Search<'a> {
         let (at_0, at_1) = (friction(0.0), friction(1.0));
         let m = system.pair_count();
         // The friction of a pair that never opens does not hang on x_n.
-        let ratio = |pair: usize| match system.pairs[pair].plane_tangential() {
-            Some(joint) if !system.pairs[pair].law.is_bilateral() => root[pair] / root[joint],
-            _ => 0.0,
-        };
+        let ratio = |pair: usize| if system.pairs[pair].law.is_bilateral() { 0.0 } else { root[pair] };
         let is_smooth = |pair: usize| at_0[pair] == 0.0 && at_1[pair] == 0.0;
         Self {
             system,
             scaled,
             base: (0..m).map(|i| at_0[i] * ratio(i)).collect(),
             growth: (0..m).map(|i| (at_1[i] - at_0[i]) * ratio(i)).collect(),
-            choices: (0..m).map(|pair| choices(&system.pairs[pair], is_smooth(pair))).collect(),
+            choices: (0..m).map(|pair| choices(&system.pairs[pair], polygon, is_smooth(pair))).collect(),
+            polygon,
+            root,
             observer,
             best: None,
             examined: 0,
@@ -233,34 +252,49 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// First sign change of the block's determinant below `limit`.
-    fn root(&self, scheme: &[PairScheme], limit: f64) -> Root {
-        let m = scheme.len();
-        let tangential = |pair: usize| self.system.pairs[pair].plane_tangential();
-        // (joint, pair whose friction acts in this row, sign of the slip)
-        let mut rows: Vec<(usize, Option<usize>, f64)> = Vec::new();
-        for (pair, state) in scheme.iter().enumerate().take(m) {
+    /// The rows of the block of a scheme: of an open pair all its joints, of a slipping one those of its facets.
+    fn rows(&self, scheme: &[PairScheme]) -> Vec<BlockRow> {
+        let mut rows: Vec<BlockRow> = Vec::new();
+        for (pair, state) in scheme.iter().enumerate() {
+            let joints = self.system.pairs[pair].tangential.clone();
             if state.open {
-                rows.push((pair, None, 0.0));
-                rows.extend(tangential(pair).map(|joint| (joint, None, 0.0)));
-            } else if state.tangential != Tangential::Stick {
-                let joint = tangential(pair);
-                rows.extend(joint.map(|joint| (joint, Some(pair), state.tangential.sign())));
+                let alone = |joint| BlockRow { parts: vec![(joint, 1.0)], friction: None };
+                rows.extend([pair].into_iter().chain(joints).map(alone));
+                continue;
+            }
+            let facets = if joints.is_empty() { Vec::new() } else { state.tangential.facets(self.polygon) };
+            for facet in facets {
+                let direction = self.polygon.direction(facet);
+                let parts = || joints.clone().zip(direction).map(|(joint, part)| (joint, part * self.root[joint]));
+                let length = parts().map(|(_, part)| part * part).sum::<f64>().sqrt();
+                let parts = parts().map(|(joint, part)| (joint, part / length)).collect();
+                rows.push(BlockRow { parts, friction: Some((pair, length.recip())) });
             }
         }
+        rows
+    }
+
+    /// First sign change of the block's determinant below `limit`.
+    fn root(&self, scheme: &[PairScheme], limit: f64) -> Root {
+        let rows = self.rows(scheme);
         let k = rows.len();
         if k == 0 {
             return Root::None;
         }
+        // Σ parts of the row · R · parts of the column.
+        let entry = |parts: &[(usize, f64)], column: &BlockRow| -> f64 {
+            let terms = parts.iter().flat_map(|a| column.parts.iter().map(move |b| (a, b)));
+            terms.map(|(&(i, a), &(j, b))| a * self.scaled[(i, j)] * b).sum()
+        };
+        let growing_part = |row: &BlockRow, column: &BlockRow, factor: &dyn Fn(usize) -> f64| {
+            row.friction.map_or(0.0, |(pair, scale)| {
+                let f = factor(pair);
+                if f == 0.0 { 0.0 } else { scale * f * entry(&[(pair, 1.0)], column) }
+            })
+        };
         let block = |factor: &dyn Fn(usize) -> f64| {
             DMatrix::from_fn(k, k, |i, j| {
-                let (joint, pair, sign) = rows[i];
-                let column = rows[j].0;
-                let friction = pair.map_or(0.0, |pair| {
-                    let f = factor(pair);
-                    if f == 0.0 { 0.0 } else { sign * f * self.scaled[(pair, column)] }
-                });
-                self.scaled[(joint, column)] + friction
+                entry(&rows[i].parts, &rows[j]) + growing_part(&rows[i], &rows[j], factor)
             })
         };
         let start = block(&|pair| self.base[pair]);
@@ -272,7 +306,7 @@ impl<'a> Search<'a> {
         if lu.determinant() < 0.0 {
             return Root::At(0.0);
         }
-        let growing: Vec<usize> = (0..k).filter(|i| rows[*i].1.is_some_and(|pair| self.growth[pair] != 0.0)).collect();
+        let growing: Vec<usize> = (0..k).filter(|i| rows[*i].friction.is_some_and(|(pair, _)| self.growth[pair] != 0.0)).collect();
         if growing.is_empty() {
             return Root::None;
         }
@@ -281,8 +315,7 @@ impl<'a> Search<'a> {
         };
         // det(A + s B) = det A · det(1 + s C), C = B A⁻¹ on the growing rows.
         let growth = DMatrix::from_fn(growing.len(), k, |i, j| {
-            let (_, pair, sign) = rows[growing[i]];
-            pair.map_or(0.0, |pair| sign * self.growth[pair] * self.scaled[(pair, rows[j].0)])
+            growing_part(&rows[growing[i]], &rows[j], &|pair| self.growth[pair])
         });
         let c = growth * DMatrix::from_fn(k, growing.len(), |i, j| inverse[(i, growing[j])]);
         // 1/s is at most the spectral radius.

@@ -5,7 +5,7 @@ use crate::contact::full_lcp::tests::coulomb;
 
 fn critical(system: &ContactSystem) -> CriticalFriction {
     let m = system.pair_count();
-    critical_friction(system, &|f| vec![f; m], 4000, 1, &mut |_| ControlFlow::Continue(()))
+    critical_friction(system, Polygon::PLANE, &|f| vec![f; m], (4000, 1), &mut |_| ControlFlow::Continue(()))
 }
 
 /// Stiffness of the unit square element, E = 1, ν = 0, t = 1, top fixed, condensed to its bottom nodes (0,0) and
@@ -76,6 +76,6 @@ fn large_problems_are_sampled() {
     let got = critical(&system);
     assert!((got.value.unwrap() - 1.25).abs() < 1e-9, "{got:?}");
     assert!(matches!(got.coverage, Coverage::Sampled { seed: 1, .. }));
-    let stopped = critical_friction(&system, &|f| vec![f; m], 4000, 1, &mut |_| ControlFlow::Break(()));
+    let stopped = critical_friction(&system, Polygon::PLANE, &|f| vec![f; m], (4000, 1), &mut |_| ControlFlow::Break(()));
     assert!(!stopped.complete);
 }

@@ -2,7 +2,7 @@
 //!
 //! Depth first, one pair after the other; a partial scheme is cut only where its signs are proved to fail. Two ways to
 //! prove it: In balls (f64 with error bounds) every quantity is kept as an affine function of the displacements of the
-//! pairs not yet decided; deciding a pair eliminates its one or two displacements, and a sign that fails for all
+//! pairs not yet decided; deciding a pair eliminates its displacements, and a sign that fails for all
 //! displacements of the others in their box ends the branch. The box: normals z_n ≥ 0 and, where R is positive
 //! definite, that around the ellipsoid zᵀR z ≤ −zᵀq that every answer lies in (zᵀλ ≤ 0 for every answer; q is RF −
 //! R·(g, 0)), with proved bounds ([`crate::contact::schemes::bounding_box`]). Where balls do not cut, the signs and the box are a linear program in exact arithmetic ([`crate::lcp::exact::polyhedron`]). Of a complete scheme it gives all answers, one or a
@@ -14,11 +14,12 @@ use nalgebra::DVector;
 use num_rational::BigRational;
 
 use crate::contact::law::{PairLaw, TangentialJoint};
+use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
-use crate::contact::schemes::ball::{Ball, Row, size, solved};
+use crate::contact::schemes::ball::{Ball, Row, eliminated};
 use crate::contact::schemes::bounding_box::ellipsoid;
 use crate::contact::schemes::exact_system::{ExactSystem, PairVariables};
-use crate::contact::schemes::scheme::{PairScheme, Tangential};
+use crate::contact::schemes::scheme::{PairScheme, Tangential, slip_forms};
 use crate::lcp::exact::all_solutions::Solutions;
 use crate::lcp::exact::corners::corners;
 use crate::lcp::exact::dyadic::{nearest, rational};
@@ -28,6 +29,8 @@ use crate::lcp::exact::polyhedron::{Polyhedron, State};
 const WORTH: usize = 3;
 /// The same with a box: measured, it costs as much as some hundred partial schemes in balls.
 const WORTH_BOXED: usize = 5;
+/// The same in space, where a pair has many states.
+const WORTH_IN_SPACE: usize = 1;
 
 /// Displacements and forces of all joints, in the order of R.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,15 +99,16 @@ pub struct Progress {
 }
 
 /// The states that a pair can be in.
-fn choices(law: &PairLaw) -> Vec<PairScheme> {
-    let closed = [PairScheme::STICK, PairScheme::SLIP_PLUS, PairScheme::SLIP_MINUS];
+fn choices(law: &PairLaw, polygon: Polygon) -> Vec<PairScheme> {
+    let all = |open: bool| {
+        let states = Tangential::all(polygon).into_iter();
+        states.map(move |tangential| PairScheme { open, tangential })
+    };
     match law.tangential {
         TangentialJoint::Free => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
-        TangentialJoint::Bounded { .. } if law.is_bilateral() => closed.to_vec(),
-        TangentialJoint::Bounded { fixed, .. } if fixed > 0.0 => {
-            closed.into_iter().chain(closed.map(|scheme| PairScheme { open: true, ..scheme })).collect()
-        }
-        TangentialJoint::Bounded { .. } => closed.into_iter().chain([PairScheme::OPEN]).collect(),
+        TangentialJoint::Bounded { .. } if law.is_bilateral() => all(false).collect(),
+        TangentialJoint::Bounded { fixed, .. } if fixed > 0.0 => all(false).chain(all(true)).collect(),
+        TangentialJoint::Bounded { .. } => all(false).chain([PairScheme::OPEN]).collect(),
     }
 }
 
@@ -119,7 +123,7 @@ pub fn enumerate(problem: &ContactProblem, observer: &mut dyn FnMut(Progress) ->
     search.result(ended.is_continue())
 }
 
-/// Rows: one per joint, pair by pair (n, then τ), holding λ_j or z_j, whichever is not fixed. Columns: the undecided
+/// Rows: one per joint, pair by pair (n, then the tangential ones), holding λ_j or z_j, whichever is not fixed. Columns: the undecided
 /// joints from `first` on, then the constant.
 #[derive(Clone)]
 struct Level {
@@ -141,6 +145,8 @@ struct Search<'a> {
     /// Undecided pairs from which on the exact linear program pays.
     worth: usize,
     choices: Vec<Vec<PairScheme>>,
+    /// The forms of the slip that tell its direction.
+    forms: Vec<[f64; 2]>,
     root: Level,
     solutions: Solutions,
     /// The schemes of every basic solution.
@@ -155,7 +161,7 @@ impl<'a> Search<'a> {
         let mut offsets = vec![0];
         for pair in 0..m {
             joints.push(pair);
-            joints.extend(system.pairs[pair].plane_tangential());
+            joints.extend(system.pairs[pair].tangential.clone());
             offsets.push(joints.len());
         }
         let exact = ExactSystem::new(problem);
@@ -173,7 +179,11 @@ impl<'a> Search<'a> {
             .map(|joint| if *joint < m { (0.0, f64::INFINITY) } else { (f64::NEG_INFINITY, f64::INFINITY) })
             .collect();
         let sides = ellipsoid(&exact.stiffness, &exact.constants, &joints);
-        let worth = if sides.is_some() { WORTH_BOXED } else { WORTH };
+        let worth = match (&sides, system.is_in_space()) {
+            (_, true) => WORTH_IN_SPACE,
+            (Some(_), false) => WORTH_BOXED,
+            (None, false) => WORTH,
+        };
         for (bound, (low, high)) in bounds.iter_mut().zip(sides.into_iter().flatten()) {
             *bound = (bound.0.max(low), bound.1.min(high));
         }
@@ -186,7 +196,8 @@ impl<'a> Search<'a> {
             joints,
             bounds,
             worth,
-            choices: problem.laws.iter().map(choices).collect(),
+            choices: problem.laws.iter().map(|law| choices(law, problem.polygon)).collect(),
+            forms: slip_forms(problem.polygon),
             root: Level { first: 0, rows },
             solutions: Solutions::default(),
             schemes: Vec::new(),
@@ -281,58 +292,28 @@ impl<'a> Search<'a> {
 
     /// The dictionary with this pair decided; `None` when a pivot may be zero.
     fn decide(&self, level: &Level, pair: usize, choice: PairScheme) -> Option<Level> {
-        let problem = self.exact.problem;
         let k = self.joints.len();
         let width = k + 1 - level.first;
         let n = self.offsets[pair];
         let next = self.offsets[pair + 1];
         let row = |i: usize| &level.rows[i * width..(i + 1) * width];
-        let f = Ball::exactly(problem.laws[pair].friction());
 
-        // Equations to be solved for the displacement of a joint.
-        let mut equations: Vec<(usize, Row)> = Vec::new();
+        // Equations to be solved for the displacements of the released joints, as many as there are of these.
+        let (mut equations, mut released): (Vec<Row>, Vec<usize>) = (Vec::new(), Vec::new());
         if choice.open {
-            equations.push((n, row(n).to_vec()));
+            equations.push(row(n).to_vec());
+            released.push(n);
         }
-        let slip = choice.tangential.sign();
-        if next - n == 2 && slip != 0.0 {
-            // x^± = 0: λ_τ ± (f λ_n + c) = 0; λ_n = 0 where open.
-            let f = if choice.open { Ball::ZERO } else { f };
-            let sign = |ball: Ball| if slip > 0.0 { ball } else { ball.negative() };
-            let mut equation: Row = row(n + 1).iter().zip(row(n)).map(|(t, n)| t.plus(sign(f.times(*n)))).collect();
-            let bound = Ball::exactly(problem.laws[pair].fixed_bound());
-            equation[width - 1] = equation[width - 1].plus(sign(bound));
-            equations.push((n + 1, equation));
+        if next - n > 1 && choice.tangential != Tangential::Stick {
+            released.extend(n + 1..next);
+            equations.extend(self.slip_equations(pair, choice, (level.first, width), &row));
         }
+        let columns: Vec<usize> = released.iter().map(|joint| joint - level.first).collect();
+        let solved = eliminated(equations, &columns)?;
         // Displacements of this pair in terms of the undecided ones; 0 where the joint is on.
-        let mut displacement: [Option<Row>; 2] = [None, None];
+        let mut displacement: Vec<Option<Row>> = vec![None; next - n];
+        released.iter().zip(solved).for_each(|(joint, row)| displacement[joint - n] = Some(row));
         let column = |joint: usize| joint - level.first;
-        match &mut equations[..] {
-            [(_, first), (_, second)] => {
-                // Two by two with the larger pivot first.
-                let relative = |own: &Row, at: usize| own[column(at)].middle.abs() / size(own);
-                let normal_first = relative(first, n) >= relative(second, n + 1);
-                let (lead, at, follow, follow_at) = if normal_first {
-                    (&*first, column(n), &mut *second, column(n + 1))
-                } else {
-                    (&*second, column(n + 1), &mut *first, column(n))
-                };
-                let factor = follow[at].over(lead[at])?;
-                for (x, y) in follow.iter_mut().zip(lead) {
-                    *x = x.minus(factor.times(*y));
-                }
-                follow[at] = Ball::ZERO;
-                let z_follow = solved(follow, follow_at)?;
-                let coupling = lead[follow_at];
-                let mut inserted: Row = lead.iter().zip(&z_follow).map(|(x, z)| x.plus(coupling.times(*z))).collect();
-                inserted[follow_at] = Ball::ZERO;
-                let z_lead = solved(&inserted, at)?;
-                displacement =
-                    if normal_first { [Some(z_lead), Some(z_follow)] } else { [Some(z_follow), Some(z_lead)] };
-            }
-            [(joint, equation)] => displacement[*joint - n] = Some(solved(equation, column(*joint))?),
-            _ => {}
-        }
 
         let skip = next - level.first;
         let mut rows = Vec::with_capacity(k * (width - skip));
@@ -363,6 +344,7 @@ impl<'a> Search<'a> {
     /// Whether some sign of the decided pairs fails for all displacements of the others.
     fn hopeless(&self, level: &Level, scheme: &[PairScheme]) -> bool {
         let (system, laws) = (&self.exact.problem.system, &self.exact.problem.laws);
+        let polygon = self.exact.problem.polygon;
         let width = self.joints.len() + 1 - level.first;
         let row = |i: usize| &level.rows[i * width..(i + 1) * width];
         let bounds = &self.bounds[level.first..];
@@ -391,20 +373,62 @@ impl<'a> Search<'a> {
             if !bilateral && fails(&[(n, 1.0)], 0.0) {
                 return true;
             }
-            if self.offsets[pair + 1] - n != 2 {
+            let tangents = self.offsets[pair + 1] - n - 1;
+            if tangents == 0 {
                 return false;
             }
+            let along = |parts: [f64; 2]| (0..tangents).map(move |t| (n + 1 + t, parts[t]));
             match state.tangential {
                 // An open pair without cohesion slips freely.
                 _ if state.open && fixed == 0.0 => false,
-                Tangential::Stick => [1.0, -1.0].into_iter().any(|side| {
+                Tangential::Stick => (0..polygon.facets()).any(|facet| {
                     let f = if state.open { 0.0 } else { laws[pair].friction() };
-                    fails(&[(n, f), (n + 1, side)], fixed)
+                    fails(&along(polygon.direction(facet)).chain([(n, f)]).collect::<Vec<_>>(), fixed)
                 }),
-                Tangential::SlipPlus => fails(&[(n + 1, 1.0)], 0.0),
-                Tangential::SlipMinus => fails(&[(n + 1, -1.0)], 0.0),
+                slip => slip.conditions(polygon).signs.into_iter().any(|(form, up)| {
+                    let sign = if up { 1.0 } else { -1.0 };
+                    fails(&along(self.forms[form].map(|part| sign * part)).collect::<Vec<_>>(), 0.0)
+                }),
             }
         })
+    }
+
+    /// What a slip asks for, as rows over the undecided displacements: its reserves are zero and, along one facet in space,
+    /// so is the slip across it.
+    fn slip_equations<'b>(
+        &self,
+        pair: usize,
+        choice: PairScheme,
+        (first, width): (usize, usize),
+        row: &dyn Fn(usize) -> &'b [Ball],
+    ) -> Vec<Row> {
+        let (law, polygon) = (&self.exact.problem.laws[pair], self.exact.problem.polygon);
+        let (n, next) = (self.offsets[pair], self.offsets[pair + 1]);
+        // λ_n = 0 where open.
+        let f = if choice.open { Ball::ZERO } else { Ball::exactly(law.friction()) };
+        let reserve = |facet: usize| {
+            let mut equation: Row = row(n).iter().map(|entry| f.times(*entry)).collect();
+            for (joint, part) in (n + 1..next).zip(polygon.direction(facet)) {
+                equation
+                    .iter_mut()
+                    .zip(row(joint))
+                    .for_each(|(sum, entry)| *sum = sum.plus(Ball::exactly(part).times(*entry)));
+            }
+            equation[width - 1] = equation[width - 1].plus(Ball::exactly(law.fixed_bound()));
+            equation
+        };
+        let across = |form: usize| {
+            let mut equation = vec![Ball::ZERO; width];
+            (n + 1..next).zip(self.forms[form]).for_each(|(joint, part)| equation[joint - first] = Ball::exactly(part));
+            equation
+        };
+        // Without cohesion all reserves of an open pair are zero: λ_τ = 0.
+        if choice.open && law.fixed_bound() == 0.0 {
+            return (n + 1..next).map(|joint| row(joint).to_vec()).collect();
+        }
+        let conditions = choice.tangential.conditions(polygon);
+        let reserves = conditions.reserves.into_iter().map(reserve);
+        reserves.chain(conditions.zero.into_iter().map(across)).collect()
     }
 
     /// All answers of a complete scheme.
@@ -459,15 +483,17 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The direction in which open pairs slip that nothing holds.
+    /// In the plane: the direction in which open pairs slip that nothing holds.
     fn with_slips(&self, scheme: &[PairScheme], state: &JointState) -> Vec<PairScheme> {
         let mut scheme = scheme.to_vec();
         for (pair, chosen) in scheme.iter_mut().enumerate() {
+            let of = &self.exact.problem.system.pairs[pair];
             if *chosen == PairScheme::OPEN
                 && self.exact.problem.laws[pair].fixed_bound() == 0.0
-                && self.exact.problem.system.pairs[pair].plane_tangential().is_some_and(|joint| state.z[joint] < 0.0)
+                && of.tangential.len() == 1
+                && state.z[of.tangential.start] < 0.0
             {
-                chosen.tangential = Tangential::SlipMinus;
+                chosen.tangential = Tangential::MINUS;
             }
         }
         scheme

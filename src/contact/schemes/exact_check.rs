@@ -2,7 +2,8 @@
 //!
 //! The f64 data R, RF, f, c, g are rationals; of a contact system from a file they are those of the file, the released
 //! tangential joints of its frictionless pairs among them. The linear equations of the scheme (x_n = 0 where open, x^± = 0 where
-//! slipping) are solved exactly and the sign of every other quantity is told exactly. The check judges the data as
+//! slipping, in space x^k = 0 of one facet or two) are solved exactly and the sign of every other quantity is told exactly. The
+//! directions d_k of the polygon are the f64 numbers that they are stored as. The check judges the data as
 //! they are stored: a structure whose loads are exactly at a limit on paper need not be so after rounding to f64.
 
 use std::cmp::Ordering;
@@ -12,53 +13,24 @@ use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
+use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
-use crate::contact::schemes::scheme::{PairScheme, Tangential};
+use crate::contact::rows::{Quantity, RowId, RowKind};
+use crate::contact::schemes::scheme::{PairScheme, Tangential, slip_forms};
 use crate::contact::system::ContactSystem;
-use crate::lcp::exact::dyadic::{product, rational, shifted};
+use crate::lcp::exact::dyadic::{parts as parts_of, product, rational, shifted};
 use crate::lcp::exact::rational_solve::{self, Quotients, RationalSolution};
 use crate::lcp::exact::scalar::{BigInt, ratio_to_f64};
 
-/// A quantity of a pair that must not be negative.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Quantity {
-    /// x_n.
-    Xn,
-    /// x⁺.
-    XPlus,
-    /// x⁻.
-    XMinus,
-    /// z_n.
-    Zn,
-    /// z⁺.
-    ZPlus,
-    /// z⁻.
-    ZMinus,
-}
-
-impl Quantity {
-    /// Its name in results.
-    pub fn name(self) -> &'static str {
-        match self {
-            Quantity::Xn => "x_n",
-            Quantity::XPlus => "x+",
-            Quantity::XMinus => "x-",
-            Quantity::Zn => "z_n",
-            Quantity::ZPlus => "z+",
-            Quantity::ZMinus => "z-",
-        }
-    }
-}
-
-/// A quantity whose sign has been told exactly.
+/// A force or displacement of the LCP whose sign has been told exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExactSign {
-    /// Index of the pair.
-    pub pair: usize,
-    /// Its id.
-    pub id: String,
-    /// Which quantity.
+    /// Its pair and couple.
+    pub row: RowId,
+    /// Whether it is the force or the displacement of the couple.
     pub quantity: Quantity,
+    /// `x_n[c1]`, `z+[c1]`, in space `z^3[c1]`.
+    pub name: String,
     /// `Less`: violated; `Equal`: exactly on its limit.
     pub sign: Ordering,
     /// The value, rounded to f64 (its sign is right unless it underflows).
@@ -96,6 +68,8 @@ pub enum Finding {
 pub struct ExactCheck {
     /// See [`Finding`].
     pub finding: Finding,
+    /// The friction of the data: in space this polygon, its directions the f64 numbers they are stored as.
+    pub polygon: Polygon,
     /// Number of released joints.
     pub released: usize,
     /// Number of signs told.
@@ -180,16 +154,51 @@ impl Forms<'_> {
         }
     }
 
-    fn normal(&self, pair: usize) -> Form {
-        self.form(&[(self.data.row[pair], 1.0)], 0.0)
+    /// x_n or a reserve.
+    fn force(&self, row: RowId) -> Form {
+        let law = &self.problem.laws[row.pair];
+        let joints = row.joints(&self.problem.system, self.problem.polygon);
+        let mut terms: Vec<(usize, f64)> = joints.map(|(joint, factor)| (self.data.row[joint], factor)).collect();
+        if row.couple == RowKind::Normal {
+            return self.form(&terms, 0.0);
+        }
+        terms.push((self.data.row[row.pair], law.friction()));
+        self.form(&terms, law.fixed_bound())
     }
 
-    /// x⁺ (side 1) or x⁻ (side −1).
-    fn reserve(&self, pair: usize, side: f64) -> Form {
-        let f = self.problem.laws[pair].friction();
-        let tangential = self.data.row[self.problem.system.pairs[pair].tangential.start];
-        self.form(&[(tangential, side), (self.data.row[pair], f)], self.problem.laws[pair].fixed_bound())
+    /// Σ part·z over the tangential joints of a pair.
+    fn slip(&self, pair: usize, parts: [f64; 2]) -> Form {
+        let joints = self.problem.system.pairs[pair].tangential.clone().map(|joint| self.data.row[joint]);
+        let parts: Vec<(usize, (i64, i64))> = joints.zip(parts.map(parts_of)).collect();
+        let part = |column: &usize| parts.iter().find(|(row, _)| row == column).map_or((0, 0), |(_, part)| *part);
+        let least = parts.iter().filter(|(_, part)| part.0 != 0).map(|(_, part)| part.1).fold(0, i64::min);
+        let whole = |column: &usize| {
+            let (mantissa, exponent) = part(column);
+            if mantissa == 0 { BigInt::zero() } else { shifted(i128::from(mantissa), exponent - least) }
+        };
+        Form {
+            coefficients: self.unknown.iter().map(whole).collect(),
+            constant: BigInt::zero(),
+            scale: shifted(1, -least),
+        }
     }
+
+    /// The equations of a slip: its reserves are zero, and so is what it has across its facet.
+    fn slip_equations(&self, pair: usize, scheme: PairScheme) -> Vec<Form> {
+        let (problem, polygon) = (self.problem, self.problem.polygon);
+        // Without cohesion all reserves of an open pair are zero, in space with any two of them.
+        if scheme.open && polygon != Polygon::PLANE && problem.laws[pair].fixed_bound() == 0.0 {
+            return (0..2).map(|facet| self.force(reserve(pair, facet))).collect();
+        }
+        let conditions = scheme.tangential.conditions(polygon);
+        let forms = slip_forms(polygon);
+        let reserves = conditions.reserves.iter().map(|facet| self.force(reserve(pair, *facet)));
+        reserves.chain(conditions.zero.iter().map(|form| self.slip(pair, forms[*form]))).collect()
+    }
+}
+
+fn reserve(pair: usize, facet: usize) -> RowId {
+    RowId { pair, couple: RowKind::Facet(facet as u16) }
 }
 
 /// Solves `scheme` (one entry per pair) exactly and tells every sign. `progress` hears the share of the work done,
@@ -200,25 +209,26 @@ pub fn exact_check(
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> ExactCheck {
     let system = &*problem.system;
-    let opens = |pair: usize| scheme[pair].open && !system.pairs[pair].law.is_bilateral();
-    let slip = |pair: usize| system.pairs[pair].plane_tangential().map_or(0.0, |_| scheme[pair].tangential.sign());
     let m = system.pair_count();
-    let normals = (0..m).filter(|pair| opens(*pair));
-    let tangentials = (0..m).filter(|pair| slip(*pair) != 0.0).map(|pair| system.pairs[pair].tangential.start);
+    let opens = |pair: &usize| scheme[*pair].open && !system.pairs[*pair].law.is_bilateral();
+    let slips = |pair: &usize| system.pairs[*pair].rubs() && scheme[*pair].tangential != Tangential::Stick;
+    let tangentials = (0..m).filter(slips).flat_map(|pair| system.pairs[pair].tangential.clone());
     let data = Data::of(problem);
-    let unknown: Vec<usize> = normals.chain(tangentials).map(|joint| data.row[joint]).collect();
+    let unknown: Vec<usize> = (0..m).filter(opens).chain(tangentials).map(|joint| data.row[joint]).collect();
     let released = unknown.len();
     let unknown = unknown.into_iter().chain(data.released.iter().copied()).collect();
     let forms = Forms { problem, data, unknown };
+    let normal = |pair| forms.force(RowId { pair, couple: RowKind::Normal });
+    let scheme_of = |pair: usize| PairScheme { open: opens(&pair), ..scheme[pair] };
     let equations: Vec<Form> = (0..m)
-        .filter(|pair| opens(*pair))
-        .map(|pair| forms.normal(pair))
-        .chain((0..m).filter(|pair| slip(*pair) != 0.0).map(|pair| forms.reserve(pair, slip(pair))))
+        .filter(opens)
+        .map(normal)
+        .chain((0..m).filter(slips).flat_map(|pair| forms.slip_equations(pair, scheme_of(pair))))
         .chain(forms.data.released.iter().map(|&row| forms.form(&[(row, 1.0)], 0.0)))
         .collect();
     let rhs: Vec<BigInt> = equations.iter().map(|form| -&form.constant).collect();
     let matrix: Vec<Vec<BigInt>> = equations.into_iter().map(|form| form.coefficients).collect();
-    let ended = |finding| ExactCheck { finding, released, signs: 0, z: None };
+    let ended = |finding| ExactCheck { finding, polygon: problem.polygon, released, signs: 0, z: None };
     let solution = match rational_solve::solve(&matrix, &rhs, &mut |share| progress(0.9 * share)) {
         RationalSolution::Unique(solution) => solution,
         RationalSolution::Singular { rank, particular } => {
@@ -229,8 +239,8 @@ pub fn exact_check(
     };
 
     let mut signs = Signs { system, forms: &forms, solution, told: 0, notable: Vec::new() };
-    for (pair, state) in scheme.iter().enumerate() {
-        signs.pair(pair, opens(pair), slip(pair), state.tangential);
+    for pair in 0..m {
+        signs.pair(pair, scheme_of(pair));
         if progress(0.9 + 0.1 * (pair + 1) as f64 / m as f64).is_break() {
             return ended(Finding::Interrupted);
         }
@@ -244,6 +254,7 @@ pub fn exact_check(
     let (violations, zeros): (Vec<_>, Vec<_>) = signs.notable.into_iter().partition(|sign| sign.sign == Ordering::Less);
     ExactCheck {
         finding: if violations.is_empty() { Finding::Proved { zeros } } else { Finding::Refuted { violations } },
+        polygon: problem.polygon,
         released,
         signs: signs_told,
         z,
@@ -271,17 +282,19 @@ impl Signs<'_> {
         (sum + &form.constant * denominator, &form.scale * denominator)
     }
 
-    fn tell(&mut self, pair: usize, quantity: Quantity, (over, under): (BigInt, BigInt)) {
+    /// Tells the sign of over / under / scale, scale > 0.
+    fn tell(&mut self, row: RowId, quantity: Quantity, (over, under): (BigInt, BigInt), scale: f64) {
         self.told += 1;
         if over.is_positive() {
             return;
         }
+        let letter = if quantity == Quantity::Force { 'x' } else { 'z' };
         self.notable.push(ExactSign {
-            pair,
-            id: self.system.pairs[pair].id.clone(),
+            row,
             quantity,
+            name: row.name(letter, self.system),
             sign: over.cmp(&BigInt::zero()),
-            value: ratio_to_f64(&over, &under),
+            value: ratio_to_f64(&over, &under) / scale,
         });
     }
 
@@ -293,40 +306,50 @@ impl Signs<'_> {
         (numerator, self.solution.denominator.clone())
     }
 
-    fn pair(&mut self, pair: usize, open: bool, slip: f64, tangential: Tangential) {
+    fn pair(&mut self, pair: usize, scheme: PairScheme) {
         let of = &self.system.pairs[pair];
-        if open {
-            self.tell(pair, Quantity::Zn, self.displacement(pair));
+        let normal = RowId { pair, couple: RowKind::Normal };
+        if scheme.open {
+            self.tell(normal, Quantity::Displacement, self.displacement(pair), 1.0);
         } else if !of.law.is_bilateral() {
-            let x_n = self.value(&self.forms.normal(pair));
-            self.tell(pair, Quantity::Xn, x_n);
+            let x_n = self.value(&self.forms.force(normal));
+            self.tell(normal, Quantity::Force, x_n, 1.0);
         }
         if !of.rubs() {
             return;
         }
-        let plus = (tangential != Tangential::SlipPlus).then(|| self.value(&self.forms.reserve(pair, 1.0)));
-        let minus = (tangential != Tangential::SlipMinus).then(|| self.value(&self.forms.reserve(pair, -1.0)));
-        // Both reserves are zero: r_f = 0, and the slip is free in sign.
-        let free = slip != 0.0 && [&plus, &minus].into_iter().flatten().all(|(over, _)| over.is_zero());
-        if free {
-            self.told += 2;
+        let polygon = self.forms.problem.polygon;
+        let slipping = scheme.tangential.facets(polygon);
+        let held = (0..polygon.facets()).filter(|facet| !slipping.contains(facet));
+        let reserves: Vec<(usize, (BigInt, BigInt))> =
+            held.map(|facet| (facet, self.value(&self.forms.force(reserve(pair, facet))))).collect();
+        // All reserves are zero: r_f = 0, and the slip is free in direction.
+        if !slipping.is_empty() && reserves.iter().all(|(_, (over, _))| over.is_zero()) {
+            self.told += reserves.len() + slipping.len();
             return;
         }
-        if let Some(plus) = plus {
-            self.tell(pair, Quantity::XPlus, plus);
+        for (facet, value) in reserves {
+            self.tell(reserve(pair, facet), Quantity::Force, value, 1.0);
         }
-        if let Some(minus) = minus {
-            self.tell(pair, Quantity::XMinus, minus);
-        }
-        if slip != 0.0 {
-            let (z, scale) = self.displacement(self.system.pairs[pair].tangential.start);
-            if slip > 0.0 {
-                self.tell(pair, Quantity::ZPlus, (z, scale));
-            } else {
-                self.tell(pair, Quantity::ZMinus, (-z, scale));
-            }
+        let other = |facet: usize| slipping.iter().copied().find(|own| *own != facet);
+        for &facet in &slipping {
+            let (parts, scale) = slip_along(polygon, facet, other(facet));
+            let value = self.value(&self.forms.slip(pair, parts));
+            self.tell(reserve(pair, facet), Quantity::Displacement, value, scale);
         }
     }
+}
+
+/// Components, and a number > 0, by which their product with z_τ is divided for ζ of a facet, of the slip along it or
+/// between it and another one.
+fn slip_along(polygon: Polygon, facet: usize, other: Option<usize>) -> ([f64; 2], f64) {
+    let along = polygon.direction(facet);
+    let Some(other) = other else { return (along, 1.0) };
+    // ζ = (z × d') / (d × d'): z × d' is 0 for z = d'.
+    let [a, b] = polygon.direction(other);
+    let scale = along[0] * b - along[1] * a;
+    let sign = scale.signum();
+    ([sign * b, -sign * a], scale.abs())
 }
 
 #[cfg(test)]

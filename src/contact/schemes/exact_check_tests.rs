@@ -19,7 +19,7 @@ fn three_answers_of_one_pair_are_proved_and_the_fourth_scheme_refuted() {
     }
     let got = check(&problem, &[PairScheme::SLIP_MINUS]);
     let Finding::Refuted { violations } = got.finding else { panic!() };
-    assert!(violations.iter().any(|v| v.id == "c1" && v.value < 0.0));
+    assert!(violations.iter().any(|v| v.name.ends_with("[c1]") && v.value < 0.0));
 }
 
 #[test]
@@ -33,8 +33,7 @@ fn sliding_beam_is_singular_and_inconsistent() {
     scheme[2] = PairScheme::STICK;
     let got = check(&beam_problem(100.0), &scheme);
     let Finding::Refuted { violations } = got.finding else { panic!() };
-    assert_eq!(violations[0].id, "c3");
-    assert_eq!(violations[0].quantity, Quantity::XPlus);
+    assert_eq!(violations[0].name, "x+[c3]");
     assert!((violations[0].value + 10.0).abs() < 1e-12);
 }
 

@@ -9,9 +9,11 @@ use crate::lcp::exact::dyadic::{WholeRows, rational, rational_rows};
 use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
 use crate::lcp::exact::rational_solve::{clear_denominators, product, rank_modulo_prime};
 
+use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
-use crate::contact::schemes::scheme::{PairScheme, Tangential};
-use crate::contact::system::ContactSystem;
+use crate::contact::rows::{RowId, RowKind};
+use crate::contact::schemes::scheme::{PairScheme, Tangential, slip_forms};
+use crate::contact::system::{ContactPair, ContactSystem};
 
 /// Entries of the kernel this close to a whole number are that number: they come out of f64 linear algebra.
 const WHOLE: f64 = 64.0 * f64::EPSILON;
@@ -26,13 +28,25 @@ pub(crate) struct ExactSystem<'a> {
 }
 
 /// The variables of a pair in the polyhedron.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PairVariables {
     pub z_n: usize,
     /// `None`: bilateral.
     pub x_n: Option<usize>,
-    /// z_τ, x⁺, x⁻; `None`: frictionless.
-    pub tangential: Option<[usize; 3]>,
+    /// `None`: frictionless.
+    pub tangential: Option<TangentialVariables>,
+}
+
+/// Those of its tangential joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct TangentialVariables {
+    /// z_τ along the tangents.
+    pub slips: Vec<usize>,
+    /// x^k of every facet.
+    pub reserves: Vec<usize>,
+    /// The forms that tell the direction of the slip ([`slip_forms`]).
+    pub turns: Vec<usize>,
+    pub polygon: Polygon,
 }
 
 impl<'a> ExactSystem<'a> {
@@ -47,38 +61,49 @@ impl<'a> ExactSystem<'a> {
         Self { problem, stiffness, constants }
     }
 
-    /// Variables: z of all joints, then x_n, x⁺, x⁻ pair by pair.
+    /// Variables: z of all joints, then pair by pair x_n, the reserves of the facets and, in space, the forms of the slip.
     pub fn variables(&self) -> Vec<PairVariables> {
-        let mut next = self.problem.system.joint_count();
-        let mut take = || {
-            next += 1;
-            next - 1
+        let (system, polygon) = (&*self.problem.system, self.problem.polygon);
+        let mut next = system.joint_count();
+        let mut take = |count: usize| {
+            next += count;
+            (next - count..next).collect::<Vec<_>>()
         };
-        self.problem
-            .system
-            .pairs
-            .iter()
-            .enumerate()
-            .map(|(i, pair)| PairVariables {
-                z_n: i,
-                x_n: (!pair.law.is_bilateral()).then(&mut take),
-                tangential: pair.plane_tangential().map(|joint| [joint, take(), take()]),
-            })
-            .collect()
+        let of = |(i, pair): (usize, &ContactPair)| PairVariables {
+            z_n: i,
+            x_n: if pair.law.is_bilateral() { None } else { take(1).pop() },
+            tangential: pair.rubs().then(|| {
+                let slips: Vec<usize> = pair.tangential.clone().collect();
+                let reserves = take(polygon.facets());
+                let turns = if slips.len() == 1 { slips.clone() } else { take(polygon.half()) };
+                TangentialVariables { slips, reserves, turns, polygon }
+            }),
+        };
+        system.pairs.iter().enumerate().map(of).collect()
     }
 
     /// What every answer obeys whatever its scheme: all signs but those of the slips, and the `sides` (joint, lowest and
     /// highest displacement) of a box that holds it.
     pub fn polyhedron(&self, sides: &[(usize, f64, f64)], go_on: &mut GoOn) -> (Polyhedron, State) {
-        let k = self.problem.system.joint_count();
+        let (system, polygon) = (&*self.problem.system, self.problem.polygon);
+        let k = system.joint_count();
         let mut rows = WholeRows::default();
-        for i in 0..self.problem.system.pair_count() {
-            if !self.problem.system.pairs[i].law.is_bilateral() {
-                rows.push_rational(&self.form(i, None));
+        let mut free: Vec<usize> = system.pairs.iter().flat_map(|pair| pair.tangential.clone()).collect();
+        for (i, pair) in system.pairs.iter().enumerate() {
+            if !pair.law.is_bilateral() {
+                rows.push_rational(&self.form(RowId { pair: i, couple: RowKind::Normal }));
             }
-            if self.problem.system.pairs[i].rubs() {
-                rows.push_rational(&self.form(i, Some(true)));
-                rows.push_rational(&self.form(i, Some(false)));
+            if !pair.rubs() {
+                continue;
+            }
+            for facet in 0..polygon.facets() as u16 {
+                rows.push_rational(&self.form(RowId { pair: i, couple: RowKind::Facet(facet) }));
+            }
+            for form in slip_forms(polygon).into_iter().filter(|_| pair.is_in_space()) {
+                let mut row = vec![0.0; k + 1];
+                pair.tangential.clone().zip(form).for_each(|(joint, part)| row[joint] = part);
+                free.push(k + rows.rows.len());
+                rows.push(&row);
             }
         }
         for &(joint, low, high) in sides {
@@ -86,40 +111,39 @@ impl<'a> ExactSystem<'a> {
             for (sign, end) in [(1.0, -low), (-1.0, high)] {
                 (row[joint], row[k]) = (sign, end);
                 // A normal is ≥ 0 as it is.
-                if end.is_finite() && (joint >= self.problem.system.pair_count() || sign < 0.0) {
+                if end.is_finite() && (joint >= system.pair_count() || sign < 0.0) {
                     rows.push(&row);
                 }
             }
         }
-        let slips: Vec<usize> = self.problem.system.pairs.iter().flat_map(|pair| pair.tangential.clone()).collect();
-        let mut made = Polyhedron::new(k, rows, &slips);
+        let mut made = Polyhedron::new(k, rows, &free);
         let mut state = made.restore(go_on);
         if state == State::Feasible {
-            let pairs = &self.problem.system.pairs;
-            let bilateral = (0..pairs.len()).filter(|&i| pairs[i].law.is_bilateral());
+            let bilateral = (0..system.pair_count()).filter(|&i| system.pairs[i].law.is_bilateral());
             (state, _) = made.fix_all(bilateral, go_on);
         }
         (made, state)
     }
 
-    /// x_n of a pair, or its x⁺ or x⁻: coefficients over z, the constant last.
-    fn form(&self, pair: usize, reserve: Option<bool>) -> Vec<BigRational> {
-        let whole = |joint: usize| self.stiffness[joint].iter().chain([&self.constants[joint]]);
-        let Some((plus, joint)) = reserve.zip(self.problem.system.pairs[pair].plane_tangential()) else {
-            return whole(pair).cloned().collect();
-        };
-        let f = rational(self.problem.laws[pair].friction());
-        let mut row: Vec<BigRational> = whole(joint)
-            .zip(whole(pair))
-            .map(|(t, n)| {
-                let bound = if f.is_zero() { BigRational::zero() } else { &f * n };
-                if plus { bound + t } else { bound - t }
-            })
-            .collect();
-        if let Some(constant) = row.last_mut() {
-            *constant += rational(self.problem.laws[pair].fixed_bound());
+    /// The force of a row, x_n or a reserve: coefficients over z, the constant last.
+    fn form(&self, row: RowId) -> Vec<BigRational> {
+        let law = &self.problem.laws[row.pair];
+        let mut terms: Vec<(usize, f64)> = row.joints(&self.problem.system, self.problem.polygon).collect();
+        let mut fixed = 0.0;
+        if row.couple != RowKind::Normal {
+            terms.push((row.pair, law.friction()));
+            fixed = law.fixed_bound();
         }
-        row
+        let mut form = vec![BigRational::zero(); self.stiffness.len() + 1];
+        for (joint, factor) in terms.into_iter().filter(|(_, factor)| *factor != 0.0) {
+            let factor = rational(factor);
+            let entries = self.stiffness[joint].iter().chain([&self.constants[joint]]);
+            form.iter_mut().zip(entries).for_each(|(sum, entry)| *sum += &factor * entry);
+        }
+        if let Some(constant) = form.last_mut() {
+            *constant += rational(fixed);
+        }
+        form
     }
 
     /// λ at z.
@@ -138,37 +162,34 @@ impl<'a> ExactSystem<'a> {
 impl PairVariables {
     /// What a scheme of this pair asks for.
     pub fn impose(&self, polyhedron: &mut Polyhedron, scheme: PairScheme, holds: bool, go_on: &mut GoOn) -> State {
-        let mut state = State::Feasible;
-        let mut fix = |polyhedron: &mut Polyhedron, variable: usize| {
-            if state == State::Feasible {
-                state = polyhedron.fix(variable, go_on);
-            }
-            state
-        };
+        let mut zero = Vec::new();
         if let Some(x_n) = self.x_n {
-            fix(polyhedron, if scheme.open { x_n } else { self.z_n });
+            zero.push(if scheme.open { x_n } else { self.z_n });
         }
-        let Some([z, plus, minus]) = self.tangential else { return state };
-        // An open pair that nothing holds slips freely: both reserves are zero.
+        let Some(of) = &self.tangential else { return polyhedron.fix_all(zero, go_on).0 };
+        // An open pair that nothing holds slips freely: all its reserves are zero, and with two of them the others.
         if scheme.open && !holds {
-            fix(polyhedron, plus);
-            return fix(polyhedron, minus);
+            zero.extend(of.reserves.iter().take(2));
+            return polyhedron.fix_all(zero, go_on).0;
         }
-        let state = fix(
-            polyhedron,
-            [z, plus, minus][match scheme.tangential {
-                Tangential::Stick => 0,
-                Tangential::SlipPlus => 1,
-                Tangential::SlipMinus => 2,
-            }],
-        );
-        if state != State::Feasible || scheme.tangential == Tangential::Stick {
-            return state;
+        if scheme.tangential == Tangential::Stick {
+            zero.extend(&of.slips);
+            return polyhedron.fix_all(zero, go_on).0;
         }
-        if scheme.tangential == Tangential::SlipMinus {
-            polyhedron.negate(z);
+        let conditions = scheme.tangential.conditions(of.polygon);
+        zero.extend(conditions.reserves.iter().map(|facet| of.reserves[*facet]));
+        zero.extend(conditions.zero.iter().map(|form| of.turns[*form]));
+        let (mut state, _) = polyhedron.fix_all(zero, go_on);
+        for (form, up) in conditions.signs {
+            if state != State::Feasible {
+                return state;
+            }
+            if !up {
+                polyhedron.negate(of.turns[form]);
+            }
+            state = polyhedron.restrict(of.turns[form], go_on);
         }
-        polyhedron.restrict(z, go_on)
+        state
     }
 }
 

@@ -8,3 +8,6 @@ pub mod enumerate;
 pub mod exact_check;
 pub(crate) mod exact_system;
 pub mod scheme;
+
+#[cfg(test)]
+mod space_tests;

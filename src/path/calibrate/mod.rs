@@ -12,7 +12,7 @@ mod model;
 
 use nalgebra::DMatrix;
 
-use super::start::{PathError, plane_system};
+use super::start::PathError;
 use crate::answer::record::{PairState, State};
 use crate::model::jet::Dependence;
 use crate::model::measurement::Measurement;
@@ -107,11 +107,9 @@ pub fn calibrate(
     measured: &[Measurement],
     history: bool,
 ) -> Result<Calibration, PathError> {
-    plane_system(
-        case.prepared,
-        "calibrate",
-        "`find FRICTION A..B where QUANTITY = VALUE` finds one friction that explains one measurement",
-    )?;
+    if case.prepared.system().is_none() {
+        return Err(PathError::Plain("calibrate"));
+    }
     if measured.len() < groups.len() {
         return Err(PathError::Missing(format!(
             "calibrate: {} cannot tell {} frictions; measure at least as many quantities, or name fewer",

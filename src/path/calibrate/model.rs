@@ -140,14 +140,7 @@ impl Model<'_> {
         if !step.is_finite() {
             return Ok(DVector::zeros(self.measured.len()));
         }
-        let moved = here.pairs.iter().zip(rates).map(|(pair, rate)| PairState {
-            x_n: pair.x_n + step * rate.x_n,
-            x_t: pair.x_t + step * rate.x_t,
-            z_n: pair.z_n + step * rate.z_n,
-            z_t: pair.z_t + step * rate.z_t,
-            ..pair.clone()
-        });
-        let moved: Vec<PairState> = moved.collect();
+        let moved: Vec<PairState> = here.pairs.iter().zip(rates).map(|(pair, rate)| rate.moved(pair, step)).collect();
         let there = self.there(at)?;
         let case = there.case(self.case);
         let after = self.read(&Facts::of_state(case, factors(case.prepared, case.values), &moved));

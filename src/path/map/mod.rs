@@ -19,6 +19,7 @@ use super::quantity::{Facts, Value};
 use super::route::Route;
 use super::start::{PathError, plane_system};
 use crate::answer::record::{RayClass, State, Verdict};
+use crate::model::rules::Rules;
 use crate::model::groups::Groups;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
@@ -253,7 +254,7 @@ impl Map {
             }
             return Ok(());
         }
-        if enumerated && let Ok(all) = there.prepared.all_answers(&there.values, case.watch) {
+        if enumerated && let Ok(all) = there.prepared.all_answers(&there.values, Rules::default(), case.watch) {
             let proved = all.complete && all.undecided == 0 && all.continua.is_empty();
             region.answers = proved.then_some(all.answers.len());
         }

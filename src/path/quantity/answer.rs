@@ -23,7 +23,9 @@ impl Facts<'_> {
             OfAnswer::Free => size(self.answer()?.size.free),
             OfAnswer::Answers => {
                 let prepared = self.prepared.ok_or_else(|| self.missing())?;
-                let all = prepared.all_answers(self.values, self.watch).map_err(|error| NoValue(error.to_string()))?;
+                let all = prepared
+                    .all_answers(self.values, self.rules, self.watch)
+                    .map_err(|error| NoValue(error.to_string()))?;
                 let proved = all.undecided == 0 && all.exact.iter().all(|exact| *exact);
                 if !proved || all.continuum.iter().any(|continuum| *continuum) {
                     return none(format!("{} answers found, but their number is not proved", all.answers.len()));

@@ -8,6 +8,7 @@ use super::value::{NoValue, none};
 use crate::answer::record::{Answer, MemberForces, NodeDisplacement, PairState, Reaction};
 use crate::fem::{Displacements, MainSystem};
 use crate::model::parameter::ParameterValues;
+use crate::model::rules::Rules;
 use crate::model::scenario::Scenario;
 use crate::model::structure::Structure;
 use crate::path::stages::History;
@@ -33,6 +34,7 @@ pub struct Facts<'a> {
     pub(super) displacements: OnceCell<Option<Displacements>>,
     pub(super) members: OnceCell<Vec<MemberForces>>,
     pub(super) history: Option<&'a History>,
+    pub(super) rules: Rules,
     pub(super) watch: &'a dyn Watch,
 }
 
@@ -55,6 +57,7 @@ impl<'a> Facts<'a> {
             prepared: Some(case.prepared),
             pairs,
             factors,
+            rules: case.rules,
             displacements: OnceCell::new(),
             ..Facts::of_nothing(case.scenario, case.values, case.watch)
         }
@@ -75,6 +78,7 @@ impl<'a> Facts<'a> {
             displacements: OnceCell::from(None),
             members: OnceCell::new(),
             history: None,
+            rules: scenario.rules,
             watch,
         }
     }
@@ -104,6 +108,7 @@ impl<'a> Facts<'a> {
             answer: Some(&stage.end),
             prepared: self.prepared,
             pairs: &stage.end.pairs,
+            rules: self.rules,
             p: Some(stage.end.p),
             factors: stage.moments.last().map_or_else(Vec::new, |moment| moment.factors.clone()),
             displacements: OnceCell::from(stage.end.displacements.as_deref().map(from_nodes)),

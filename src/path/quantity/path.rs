@@ -26,7 +26,7 @@ impl<'a> Facts<'a> {
     pub(super) fn critical(&self, parameter: &str) -> Result<f64, NoValue> {
         let prepared = self.prepared.ok_or_else(|| self.missing())?;
         let found = prepared
-            .critical_friction(self.values, parameter, self.watch)
+            .critical_friction(self.values, parameter, self.rules, self.watch)
             .map_err(|error| NoValue(error.to_string()))?;
         found.value.ok_or_else(|| NoValue("no friction was found at which several answers are possible".into()))
     }

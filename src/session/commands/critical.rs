@@ -11,7 +11,8 @@ use crate::view;
 
 /// Find the friction above which more than one answer is possible
 ///
-/// Exact up to 8 pairs; beyond, a search among drawn working schemes, reported as such.
+/// Exact up to 8 pairs (in space up to 3 on 8 facets, of whose polygon the value is); beyond, a search among drawn working
+/// schemes, reported as such.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  load klarbring; critical f")]
 pub struct Critical {
@@ -41,20 +42,20 @@ struct CriticalReport<'a> {
 
 impl Session {
     pub(in crate::session) fn critical(&self, friction: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let values = self.now.values.clone();
+        let (values, rules) = (self.now.values.clone(), self.now.rules);
         let name = friction.to_owned();
         if self.now.scenario.uses.place(&name, Region::Geometry).is_some() {
             return Err(CommandError::Refused(format!(
                 "{name} stands in the geometry or stiffness as well: `critical` varies friction alone"
             )));
         }
-        let found = self.ask(io, move |prepared, _, watch| prepared.critical_friction(&values, &name, watch))?;
+        let found = self.ask(io, move |prepared, _, watch| prepared.critical_friction(&values, &name, rules, watch))?;
         let pairs = self.pairs();
         let ids: Vec<&str> = pairs.iter().map(|pair| pair.id.as_str()).collect();
         let report = CriticalReport {
             parameter: friction,
             value: found.value,
-            scheme: found.scheme.as_ref().map(|scheme| view::critical::scheme_words(&ids, scheme)),
+            scheme: found.scheme.as_ref().map(|scheme| view::critical::scheme_words(&ids, scheme, found.polygon)),
             exact: found.coverage == Coverage::Exact,
             examined: found.examined,
             singular: found.singular,

@@ -104,11 +104,11 @@ impl Session {
         answer: Option<usize>,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let values = self.now.values.clone();
+        let (values, rules) = (self.now.values.clone(), self.now.rules);
         // Stopped, it shows what was found so far.
         let (prepared, _) = self.both()?;
         let mut all: AllAnswers =
-            worker::run_patiently(io.watch, PATIENCE, move |watch| prepared.all_answers(&values, watch))??;
+            worker::run_patiently(io.watch, PATIENCE, move |watch| prepared.all_answers(&values, rules, watch))??;
         if let Some(number) = answer {
             let count = all.answers.len();
             if number == 0 || number > count {

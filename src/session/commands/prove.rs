@@ -135,6 +135,19 @@ fn write(path: &Path, text: &str) -> Result<(), CommandError> {
 
 /// What is proved.
 fn sentence(proof: &Proof) -> String {
+    let claimed = claimed(proof);
+    match proof.polygon() {
+        None => claimed,
+        Some(polygon) => format!(
+            "{claimed} All of it is about the polygon of {} facets with the directions that the proof gives, not about the \
+             cone{}.",
+            polygon.facets(),
+            if matches!(proof.claim, Claim::Answer(_)) { ", to which Newton's method goes on from this answer" } else { "" }
+        ),
+    }
+}
+
+fn claimed(proof: &Proof) -> String {
     let pairs = proof.forms.groups.len();
     let unit = match &proof.system {
         ProvedSystem::Contact(_) => "pairs",

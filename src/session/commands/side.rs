@@ -107,7 +107,7 @@ impl Session {
         let (prepared, solved) = self.both()?;
         // Where a combination is shown, its factors are in its own geometry.
         let shown = self.combination.as_ref().map_or(prepared, |(_, there)| Arc::clone(there));
-        let values = self.now.values.clone();
+        let (values, rules) = (self.now.values.clone(), self.now.rules);
         worker::run(watch, move |watch| {
             let Some(system) = shown.system() else {
                 return refused("answers are enumerated for contact problems, this is a bare LCP");
@@ -119,7 +119,7 @@ impl Session {
                     system.pair_count()
                 ));
             }
-            let found = shown.all_answers(&values, watch)?;
+            let found = shown.all_answers(&values, rules, watch)?;
             let each = found.answers.into_iter().zip(found.exact).zip(found.continuum);
             let answers = each.map(|((answer, exact), continuum)| OneAnswer {
                 shown: solved.answer.is_answer() && same_pairs(&answer.answer.pairs, &solved.answer.pairs),

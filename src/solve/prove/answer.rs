@@ -41,8 +41,8 @@ fn solution(forms: &Forms, scheme: &[usize], watch: &dyn Watch) -> Option<Vec<Bi
     let mut zero = vec![false; forms.names.len()];
     forms.zero.iter().for_each(|&variable| zero[variable] = true);
     for branch in chosen(forms, scheme) {
-        // Of an open pair x- follows from x_n and x+.
-        branch.zero.iter().take(2).for_each(|&variable| zero[variable] = true);
+        // Of an open pair in the plane x- follows from x_n and x+.
+        branch.zero.iter().take(1 + forms.tangents.max(1)).for_each(|&variable| zero[variable] = true);
     }
     let unknown: Vec<usize> = (0..n).filter(|&variable| !zero[variable]).collect();
     // x_t of a frictionless pair may be 0 as it is.
@@ -98,12 +98,12 @@ fn exchange(forms: &Forms, scheme: &mut [usize], values: &[BigRational]) -> bool
         let kept = |branch: &Branch| -> usize {
             branch.zero.iter().filter(|variable| present.zero.contains(variable)).count()
         };
-        let is_wrong = !present.sign_holds(values) || leaves(present);
+        let is_wrong = !present.signs_hold(values) || leaves(present);
         let candidates = group
             .branches
             .iter()
             .enumerate()
-            .filter(|(other, branch)| *other != *now && (leaves(branch) || is_wrong && branch.sign.is_none()));
+            .filter(|(other, branch)| *other != *now && (leaves(branch) || is_wrong && branch.signs.is_empty()));
         if let Some((other, _)) = candidates.max_by_key(|(_, branch)| kept(branch)) {
             *now = other;
             changed = true;

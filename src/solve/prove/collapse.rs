@@ -3,7 +3,9 @@
 //! ```text
 //!   R ζ = 0;   ζ_n ≥ f |ζ_t| (bound pairs: ζ_n = 0);   work −load·ζ > bound Σ c |ζ_t|
 //! ```
-//! On ζ forces within the laws' bounds take at most the bound, and the loads do more: nothing balances them.
+//! On ζ forces within the laws' bounds take at most the bound, and the loads do more: nothing balances them. In space |ζ_t| is
+//! the length of a vector where the proof is about Coulomb's cone, a bound of it from above so that it is a fraction; about the
+//! polygon it is a + b of the slip a d_k + b d_(k+1).
 
 use std::collections::HashMap;
 
@@ -15,11 +17,12 @@ use super::forms::of_contact;
 use super::system::ProvedContact;
 use super::tree::{Sum, contradiction};
 use crate::contact::law::TangentialJoint;
+use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
 use crate::explain::certificate::certify;
 use crate::explain::motions::FreeMotions;
 use crate::explain::ray::Built;
-use crate::lcp::exact::dyadic::rational;
+use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::exact::polyhedron::State;
 use crate::watch::Watch;
 
@@ -29,8 +32,12 @@ const MOST_PAIRS: usize = 60;
 /// The proof.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collapse {
-    /// ζ over all 2m joints.
+    /// ζ over all joints.
     pub motion: Vec<BigRational>,
+    /// Of every pair what counts as |ζ_t|; empty in the plane, where that is plain.
+    pub slips: Vec<BigRational>,
+    /// Whether it is about Coulomb's cone, or in the plane; otherwise about the polygon.
+    pub on_cone: bool,
     /// How much of each motion of the kernel it is made of; empty where R ζ = 0 by the numbers of R.
     pub amounts: Vec<BigRational>,
     /// −load·ζ.
@@ -83,35 +90,62 @@ fn made_of(contact: &ProvedContact, amounts: Vec<BigRational>) -> Option<Collaps
     verified(contact, motion, amounts)
 }
 
-/// The motion behind a contradiction of the signs of forces: the factors of x_n, x+, x- and x_t over the joints. With R
-/// positive semidefinite R ζ = 0, because ζᵀR ζ ≤ 0.
+/// The motion behind a contradiction of the signs of forces: the factors of x_n, of the reserves and of x_t over the joints.
+/// With R positive semidefinite R ζ = 0, because ζᵀR ζ ≤ 0.
 fn motion_of(contact: &ProvedContact, sum: Sum) -> Vec<BigRational> {
-    let m = contact.ids.len();
     let mut factors: HashMap<usize, BigRational> = sum.into_iter().collect();
     // The forms follow the unknowns, those of a pair one another.
-    let mut variables = 2 * m..;
+    let mut variables = contact.load.len()..;
     let mut next = || variables.next().and_then(|variable| factors.remove(&variable)).unwrap_or_default();
-    let mut motion = vec![BigRational::zero(); 2 * m];
+    let mut motion = vec![BigRational::zero(); contact.load.len()];
     for (pair, law) in contact.laws.iter().enumerate() {
         motion[pair] = next();
-        motion[m + pair] = match law.tangential {
-            TangentialJoint::Free => next(),
+        match law.tangential {
+            TangentialJoint::Free => contact.slips(pair).for_each(|joint| motion[joint] = next()),
             TangentialJoint::Bounded { friction, .. } => {
-                let (plus, minus) = (next(), next());
-                motion[pair] += rational(friction) * (&plus + &minus);
-                plus - minus
+                for facet in 0..contact.polygon.facets() {
+                    let factor = next();
+                    motion[pair] += rational(friction) * &factor;
+                    for (joint, part) in contact.slips(pair).zip(contact.polygon.direction(facet)) {
+                        motion[joint] += rational(part) * &factor;
+                    }
+                }
+                // The forms of the slip speak of no force: they are the same for all motions.
+                let turns = if contact.tangents == 1 { 0 } else { contact.polygon.half() };
+                (0..turns).for_each(|_| drop(next()));
             }
-        };
+        }
     }
     motion
 }
 
-/// The proof of a motion with R ζ = 0, if every sign of it holds.
+/// The proof of a motion with R ζ = 0, if every sign of it holds: on the cone where that is what friction is, else on the
+/// polygon.
 fn verified(contact: &ProvedContact, motion: Vec<BigRational>, amounts: Vec<BigRational>) -> Option<Collapse> {
-    let m = contact.ids.len();
+    let ways = match (contact.tangents, contact.cone) {
+        (1, _) => &[true][..],
+        (_, true) => &[true, false],
+        (_, false) => &[false],
+    };
+    ways.iter().find_map(|&on_cone| verified_on(contact, &motion, &amounts, on_cone))
+}
+
+fn verified_on(
+    contact: &ProvedContact,
+    motion: &[BigRational],
+    amounts: &[BigRational],
+    on_cone: bool,
+) -> Option<Collapse> {
     let mut bound = BigRational::zero();
+    let mut slips = Vec::new();
     for (pair, law) in contact.laws.iter().enumerate() {
-        let (normal, slip) = (&motion[pair], motion[m + pair].abs());
+        let normal = &motion[pair];
+        let slip = match &motion[contact.slips(pair)] {
+            [along] => along.abs(),
+            [along, across] if on_cone => length_above(along, across),
+            [along, across] => gauge(contact.polygon, along, across)?,
+            _ => return None,
+        };
         let least = match law.tangential {
             TangentialJoint::Free => BigRational::zero(),
             TangentialJoint::Bounded { friction, fixed } => {
@@ -123,7 +157,42 @@ fn verified(contact: &ProvedContact, motion: Vec<BigRational>, amounts: Vec<BigR
         if !holds {
             return None;
         }
+        if contact.tangents > 1 {
+            slips.push(slip);
+        }
     }
     let work = -motion.iter().zip(contact.load.iter()).map(|(z, load)| z * rational(*load)).sum::<BigRational>();
-    (work > bound).then_some(Collapse { motion, amounts, work, bound })
+    let (motion, amounts) = (motion.to_vec(), amounts.to_vec());
+    (work > bound).then_some(Collapse { motion, slips, on_cone, amounts, work, bound })
+}
+
+/// A fraction that is no less than the length of a vector, and hardly more.
+fn length_above(along: &BigRational, across: &BigRational) -> BigRational {
+    if along.is_zero() || across.is_zero() {
+        return along.abs() + across.abs();
+    }
+    let square = along * along + across * across;
+    // The larger component keeps the root in the range of f64.
+    let unit = along.abs().max(across.abs());
+    let relative = nearest(&(&square / (&unit * &unit))).sqrt();
+    let mut factor = relative;
+    loop {
+        let length = rational(factor) * &unit;
+        if &length * &length >= square {
+            return length;
+        }
+        factor = factor.next_up();
+    }
+}
+
+/// a + b of a slip a d_k + b d_(k+1), a and b ≥ 0: the most that forces within the polygon can do on it per unit of their bound.
+fn gauge(polygon: Polygon, along: &BigRational, across: &BigRational) -> Option<BigRational> {
+    let directions: Vec<[BigRational; 2]> =
+        (0..polygon.facets()).map(|facet| polygon.direction(facet).map(rational)).collect();
+    (0..directions.len()).find_map(|facet| {
+        let [[a, b], [c, d]] = [&directions[facet], &directions[(facet + 1) % directions.len()]];
+        let area = a * d - b * c;
+        let (first, second) = ((along * d - across * c) / &area, (a * across - b * along) / &area);
+        (!first.is_negative() && !second.is_negative()).then(|| first + second)
+    })
 }

@@ -7,13 +7,19 @@
 //!   LCP       z ≥ 0, w ≥ 0;                       per row one of    z = 0,   w = 0
 //! ```
 //! With c > 0 an open pair has three branches as a closed one has; a bound pair has z_n = 0 and no x_n ≥ 0; a
-//! frictionless pair has x_t = 0 and is closed or open.
+//! frictionless pair has x_t = 0 and is closed or open. In space x^k ≥ 0 of every facet, z_t1 and z_t2 in place of z_t, and
+//! ```text
+//!   slip^k        z_n = x^k = turn^k = 0, the slip along d_k          turn^k = d_k × z_τ
+//!   slip^k^k+1    z_n = x^k = x^(k+1) = 0, turn^k ≥ 0, turn^(k+1) ≤ 0, where turn^(k + K/2) is −turn^k
+//! ```
 
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
 use super::system::{ProvedContact, ProvedSystem};
 use crate::contact::law::{PairLaw, TangentialJoint};
+use crate::contact::polygon::Polygon;
+use crate::contact::schemes::scheme::{Tangential, slip_forms};
 use crate::lcp::exact::dyadic::{WholeRows, rational, rational_rows};
 use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
 use crate::lcp::exact::rational_solve::{clear_denominators, product};
@@ -22,11 +28,11 @@ use crate::lcp::exact::rational_solve::{clear_denominators, product};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
     /// `stick`, `slip+`, `slip-`, `open`, `open stick` …; `z` or `w`, whichever is zero.
-    pub name: &'static str,
+    pub name: String,
     /// Variables that are zero in it.
     pub zero: Vec<usize>,
-    /// A displacement with a sign: whether it is ≥ 0, else ≤ 0.
-    pub sign: Option<(usize, bool)>,
+    /// Displacements with a sign: whether it is ≥ 0, else ≤ 0.
+    pub signs: Vec<(usize, bool)>,
 }
 
 /// A pair or a row of an LCP, of which one branch holds.
@@ -41,6 +47,8 @@ pub struct Group {
 /// Variables: the unknowns z, then the forms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Forms {
+    /// Tangential joints of each pair; 0 of an LCP.
+    pub tangents: usize,
     /// Number of unknowns.
     pub unknowns: usize,
     /// Name of every variable: `z_n c1`, `x+ c1`, `w 3`.
@@ -67,12 +75,13 @@ impl Forms {
                 let group = |i: usize| Group {
                     name: names[i].clone(),
                     branches: vec![
-                        Branch { name: "z", zero: vec![i], sign: None },
-                        Branch { name: "w", zero: vec![n + i], sign: None },
+                        Branch { name: "z".to_owned(), zero: vec![i], signs: Vec::new() },
+                        Branch { name: "w".to_owned(), zero: vec![n + i], signs: Vec::new() },
                     ],
                 };
                 let named = |letter: &'static str| names.iter().map(move |name| format!("{letter} {name}"));
                 Forms {
+                    tangents: 0,
                     unknowns: n,
                     names: named("z").chain(named("w")).collect(),
                     forms,
@@ -87,12 +96,15 @@ impl Forms {
     /// The unknowns of a contact system without any form: all that a motion speaks of.
     pub fn unknowns_of(contact: &ProvedContact) -> Forms {
         let m = contact.ids.len();
-        let names = ["z_n", "z_t"].iter().flat_map(|word| contact.ids.iter().map(move |id| format!("{word} {id}")));
+        let named = |word: &'static str| move |id: &String| format!("{word} {id}");
+        let words = if contact.tangents == 1 { &["z_t"][..] } else { &["z_t1", "z_t2"] };
+        let slips = contact.ids.iter().flat_map(|id| words.iter().map(move |word| named(word)(id)));
         Forms {
-            unknowns: 2 * m,
-            names: names.collect(),
+            tangents: contact.tangents,
+            unknowns: (1 + contact.tangents) * m,
+            names: contact.ids.iter().map(named("z_n")).chain(slips).collect(),
             forms: Vec::new(),
-            signed: contact.laws.iter().map(|law| !law.is_bilateral()).chain(vec![false; m]).collect(),
+            signed: contact.laws.iter().map(|law| !law.is_bilateral()).chain(vec![false; contact.tangents * m]).collect(),
             zero: (0..m).filter(|&pair| contact.laws[pair].is_bilateral()).collect(),
             groups: Vec::new(),
         }
@@ -106,12 +118,12 @@ impl Forms {
     }
 
     /// The branches that hold, one for each group, where these values are an answer.
-    pub fn scheme(&self, values: &[BigRational]) -> Option<Vec<&'static str>> {
+    pub fn scheme(&self, values: &[BigRational]) -> Option<Vec<&str>> {
         let signs = self.signed.iter().zip(values).all(|(signed, value)| !signed || !value.is_negative());
         if !signs || self.zero.iter().any(|&variable| !values[variable].is_zero()) {
             return None;
         }
-        self.groups.iter().map(|group| Some(group.branches.iter().find(|branch| branch.holds(values))?.name)).collect()
+        self.groups.iter().map(|group| Some(&*group.branches.iter().find(|branch| branch.holds(values))?.name)).collect()
     }
 
     /// All signs but those of the slips and all that is zero in every answer, nothing decided yet; beside the state the
@@ -130,23 +142,23 @@ impl Forms {
 }
 
 impl Branch {
-    /// Whether its displacement has its sign, if there is one.
-    pub(super) fn sign_holds(&self, values: &[BigRational]) -> bool {
-        self.sign.is_none_or(|(variable, up)| match up {
+    /// Whether its displacements have their signs.
+    pub(super) fn signs_hold(&self, values: &[BigRational]) -> bool {
+        self.signs.iter().all(|&(variable, up)| match up {
             true => !values[variable].is_negative(),
             false => !values[variable].is_positive(),
         })
     }
 
-    /// Whether its zeros and its sign hold.
+    /// Whether its zeros and its signs hold.
     pub fn holds(&self, values: &[BigRational]) -> bool {
-        self.sign_holds(values) && self.zero.iter().all(|&variable| values[variable].is_zero())
+        self.signs_hold(values) && self.zero.iter().all(|&variable| values[variable].is_zero())
     }
 }
 
-/// Of a contact system with this R. Forms pair by pair: x_n, then x_t of a frictionless one, else x+ and x-.
+/// Of a contact system with this R. Forms pair by pair: x_n, then x_t of a frictionless one, else the reserves and, in space,
+/// turn^k of the facets that are no mirrors.
 pub(super) fn of_contact(contact: &ProvedContact, stiffness: &[Vec<BigRational>]) -> Forms {
-    let m = contact.ids.len();
     let force = |joint: usize| -> Vec<BigRational> {
         let row = &stiffness[joint];
         let gaps = contact.laws.iter().map(PairLaw::gap).zip(row).filter(|(gap, _)| *gap != 0.0);
@@ -155,32 +167,26 @@ pub(super) fn of_contact(contact: &ProvedContact, stiffness: &[Vec<BigRational>]
     };
     let mut made = Forms::unknowns_of(contact);
     for (pair, (law, id)) in contact.laws.iter().zip(&contact.ids).enumerate() {
-        let (normal, tangential) = (force(pair), force(m + pair));
-        let mut form = |word: &str, form: Vec<BigRational>, signed: bool| {
-            made.names.push(format!("{word} {id}"));
-            made.forms.push(form);
-            made.signed.push(signed);
-            made.names.len() - 1
-        };
-        let x_n = form("x_n", normal.clone(), !law.is_bilateral());
+        let (normal, slips) = (force(pair), contact.slips(pair));
+        let tangential: Vec<Vec<BigRational>> = slips.clone().map(force).collect();
+        let x_n = made.add(format!("x_n {id}"), normal.clone(), !law.is_bilateral());
         let branches = match law.tangential {
             TangentialJoint::Free => {
-                let x_t = form("x_t", tangential, false);
-                made.zero.push(x_t);
-                if stiffness.iter().all(|row| row[m + pair].is_zero()) {
-                    made.zero.push(m + pair);
+                let words = if contact.tangents == 1 { &["x_t"][..] } else { &["x_t1", "x_t2"] };
+                for ((word, form), z_t) in words.iter().zip(tangential).zip(slips) {
+                    let x_t = made.add(format!("{word} {id}"), form, false);
+                    made.zero.push(x_t);
+                    if stiffness.iter().all(|row| row[z_t].is_zero()) {
+                        made.zero.push(z_t);
+                    }
                 }
                 frictionless(pair, x_n)
             }
             TangentialJoint::Bounded { friction, fixed } => {
-                let mut reserve = |word: &str, side: BigRational| {
-                    let (f, last) = (rational(friction), normal.len() - 1);
-                    let mut sum: Vec<_> = normal.iter().zip(&tangential).map(|(n, t)| &f * n + &side * t).collect();
-                    sum[last] += rational(fixed);
-                    form(word, sum, true)
-                };
-                let reserves = [reserve("x+", One::one()), reserve("x-", -BigRational::one())];
-                rubbing(law, pair, x_n, m + pair, reserves)
+                let f = rational(friction);
+                let mut bound: Vec<BigRational> = normal.iter().map(|n| &f * n).collect();
+                bound.iter_mut().next_back().into_iter().for_each(|constant| *constant += rational(fixed));
+                rubbing(&mut made, contact, pair, x_n, (bound, tangential))
             }
         };
         made.groups.push(Group { name: id.clone(), branches });
@@ -188,28 +194,77 @@ pub(super) fn of_contact(contact: &ProvedContact, stiffness: &[Vec<BigRational>]
     made
 }
 
+impl Forms {
+    /// Adds a form; its variable.
+    fn add(&mut self, name: String, form: Vec<BigRational>, signed: bool) -> usize {
+        self.names.push(name);
+        self.forms.push(form);
+        self.signed.push(signed);
+        self.names.len() - 1
+    }
+}
+
 fn frictionless(z_n: usize, x_n: usize) -> Vec<Branch> {
-    let branch = |name, zero| Branch { name, zero: vec![zero], sign: None };
+    let branch = |name: &str, zero| Branch { name: name.to_owned(), zero: vec![zero], signs: Vec::new() };
     vec![branch("closed", z_n), branch("open", x_n)]
 }
 
-fn rubbing(law: &PairLaw, z_n: usize, x_n: usize, z_t: usize, [plus, minus]: [usize; 2]) -> Vec<Branch> {
-    let three = |names: [&'static str; 3], normal: usize| {
-        let [stick, up, down] = names;
-        vec![
-            Branch { name: stick, zero: vec![normal, z_t], sign: None },
-            Branch { name: up, zero: vec![normal, plus], sign: Some((z_t, true)) },
-            Branch { name: down, zero: vec![normal, minus], sign: Some((z_t, false)) },
-        ]
+/// The forms and branches of a pair that rubs; `bound` is f x_n + c, `tangential` λ along the tangents.
+fn rubbing(
+    made: &mut Forms,
+    contact: &ProvedContact,
+    pair: usize,
+    x_n: usize,
+    (bound, tangential): (Vec<BigRational>, Vec<Vec<BigRational>>),
+) -> Vec<Branch> {
+    let (law, id, polygon, slips) = (&contact.laws[pair], &contact.ids[pair], contact.polygon, contact.slips(pair));
+    let in_plane = polygon == Polygon::PLANE;
+    let mut reserves = Vec::new();
+    for facet in 0..polygon.facets() {
+        let mut form = bound.clone();
+        for (row, part) in tangential.iter().zip(polygon.direction(facet)) {
+            let part = rational(part);
+            form.iter_mut().zip(row).for_each(|(sum, entry)| *sum += &part * entry);
+        }
+        let word = match (in_plane, facet) {
+            (true, 0) => "x+".to_owned(),
+            (true, _) => "x-".to_owned(),
+            (false, facet) => format!("x^{facet}"),
+        };
+        reserves.push(made.add(format!("{word} {id}"), form, true));
+    }
+    let turns: Vec<usize> = match in_plane {
+        true => slips.clone().collect(),
+        false => (slip_forms(polygon).into_iter().enumerate())
+            .map(|(facet, parts)| {
+                let mut form = vec![BigRational::zero(); made.unknowns + 1];
+                slips.clone().zip(parts).for_each(|(z_t, part)| form[z_t] = rational(part));
+                made.add(format!("turn^{facet} {id}"), form, false)
+            })
+            .collect(),
     };
-    let mut all = three(["stick", "slip+", "slip-"], z_n);
+    let of = |prefix: &str, normal: usize| -> Vec<Branch> {
+        let branch = |state: Tangential| {
+            let conditions = state.conditions(polygon);
+            let held = if state == Tangential::Stick { slips.clone() } else { 0..0 };
+            let zero = [normal].into_iter().chain(held).chain(conditions.reserves.iter().map(|facet| reserves[*facet]));
+            Branch {
+                name: format!("{prefix}{}", state.word(polygon)),
+                zero: zero.chain(conditions.zero.iter().map(|form| turns[*form])).collect(),
+                signs: conditions.signs.iter().map(|&(form, up)| (turns[form], up)).collect(),
+            }
+        };
+        Tangential::all(polygon).into_iter().map(branch).collect()
+    };
+    let mut all = of("", pair);
     if law.is_bilateral() {
         return all;
     }
     if law.fixed_bound() > 0.0 {
-        all.extend(three(["open stick", "open slip+", "open slip-"], x_n));
+        all.extend(of("open ", x_n));
     } else {
-        all.push(Branch { name: "open", zero: vec![x_n, plus, minus], sign: None });
+        let zero = [x_n].into_iter().chain(reserves.iter().copied().take(2)).collect();
+        all.push(Branch { name: "open".to_owned(), zero, signs: Vec::new() });
     }
     all
 }

@@ -21,6 +21,7 @@ use super::state::{RunData, Solved};
 use crate::answer::attempt::AttemptEngine;
 use crate::answer::record::{OutcomeKind, RayClass};
 use crate::contact::law::PairLaw;
+use crate::contact::polygon::Polygon;
 use crate::contact::schemes::scheme::PairScheme;
 use crate::watch::{Budget, Watch};
 use answer::answer_of;
@@ -69,6 +70,17 @@ pub struct Proof {
     pub claim: Claim,
 }
 
+impl Proof {
+    /// The polygon that it is about; `None` in the plane, of an LCP and where it is about Coulomb's cone itself.
+    pub fn polygon(&self) -> Option<Polygon> {
+        match (&self.system, &self.claim) {
+            (_, Claim::Collapse(Collapse { on_cone: true, .. })) => None,
+            (ProvedSystem::Contact(contact), _) if contact.tangents > 1 => Some(contact.polygon),
+            _ => None,
+        }
+    }
+}
+
 fn refused<T>(text: impl Into<String>) -> Result<T, QuestionError> {
     Err(QuestionError::Refused(text.into()))
 }
@@ -91,7 +103,7 @@ impl Prepared {
         match (&solved.run, &*self.geometry) {
             (RunData::Plain { lcp, .. }, Geometry::Plain { names, .. }) => Ok(ProvedSystem::of_plain(lcp, names)),
             (RunData::Contact { problem, .. }, _) => {
-                if let Some(refusal) = problem.system.refusal("prove") {
+                if let Some(refusal) = problem.system.dependence_refusal("prove") {
                     return refused(format!(
                         "{refusal}; `export lcp FILE.json` writes an LCP of which answers can be proved"
                     ));
@@ -221,7 +233,9 @@ fn prove_answer(system: ProvedSystem, solved: &Solved, watch: &dyn Watch) -> Res
     let scheme = match (&system, &solved.run) {
         (ProvedSystem::Contact(contact), _) => {
             let schemes = final_scheme(solved);
-            let branch = |((group, law), scheme): ((&Group, &PairLaw), &PairScheme)| branch_of(group, law, *scheme);
+            let branch = |((group, law), scheme): ((&Group, &PairLaw), &PairScheme)| {
+                branch_of(group, law, (*scheme, contact.polygon))
+            };
             forms.groups.iter().zip(&contact.laws).zip(&schemes).map(branch).collect()
         }
         (ProvedSystem::Plain { .. }, run) => plain_scheme(forms.groups.len(), solved, run),
@@ -237,12 +251,12 @@ fn prove_answer(system: ProvedSystem, solved: &Solved, watch: &dyn Watch) -> Res
 }
 
 /// The branch that a working scheme means; 0 where it names none.
-fn branch_of(group: &Group, law: &PairLaw, scheme: PairScheme) -> usize {
-    let slips = scheme.tangential.word();
+fn branch_of(group: &Group, law: &PairLaw, (scheme, polygon): (PairScheme, Polygon)) -> usize {
+    let slips = scheme.tangential.word(polygon);
     let open = scheme.open && !law.is_bilateral();
     let word = match open {
         true => format!("open {slips}"),
-        false => slips.to_owned(),
+        false => slips,
     };
     let named = |name: &str| group.branches.iter().position(|branch| branch.name == name);
     named(&word).or_else(|| named(if open { "open" } else { "closed" })).unwrap_or_default()

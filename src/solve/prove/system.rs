@@ -1,18 +1,22 @@
 //! The numbers that a proof is about: a contact system or a bare LCP in f64, each number taken as the rational it is.
 //!
 //! ```text
-//!   contact   λ = R (z − (g, 0)) + load over all 2m joints; where motions Z are given, R means Πᵀ R Π with Π Z = 0
+//!   contact   λ = R (z − (g, 0)) + load over all joints, 2m, in space 3m; where motions Z are given, R means Πᵀ R Π with Π Z = 0
 //!   LCP       w = M z + q
 //! ```
 //! A frictionless pair has λ_τ = 0, and z_τ = 0 where its row of R is zero.
+
+use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
 use crate::contact::law::PairLaw;
+use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::exact_system::{give_kernel, telling_joints};
+use crate::contact::system::ContactPair;
 use crate::explain::motions::FreeMotions;
 use crate::explain::ray::Built;
 use crate::lcp::exact::dyadic::{WholeRows, rational, rational_rows};
@@ -26,11 +30,17 @@ pub struct ProvedContact {
     pub ids: Vec<String>,
     /// Their laws.
     pub laws: Vec<PairLaw>,
-    /// R, 2m × 2m: all normals, then all tangentials.
+    /// Tangential joints of each pair: 1 in the plane, 2 in space.
+    pub tangents: usize,
+    /// The directions of friction, in space those that the proof is about.
+    pub polygon: Polygon,
+    /// Whether friction in space is Coulomb's cone, of which a collapse is proved where it can be.
+    pub cone: bool,
+    /// R: all normals, then the tangentials of each pair.
     pub stiffness: DMatrix<f64>,
-    /// Motions Z with R Z = 0, each 2m; none where R is meant as it stands.
+    /// Motions Z with R Z = 0; none where R is meant as it stands.
     pub kernel: Vec<DVector<f64>>,
-    /// Σ factor·RF, 2m.
+    /// Σ factor·RF.
     pub load: DVector<f64>,
 }
 
@@ -64,26 +74,28 @@ impl ProvedContact {
         let m = system.pair_count();
         let ids = system.pairs.iter().map(|pair| pair.id.clone()).collect();
         let laws = problem.laws.clone();
+        let (tangents, polygon, cone) = (system.tangents, problem.polygon, problem.cone);
         if let (Some(file), Some(load), 0) = (&system.file, &problem.file_load, system.kernel.ncols())
             && !file.compliance
         {
             let (stiffness, load) = (file.matrix.clone(), load.vector.clone());
-            return ProvedContact { ids, laws, stiffness, kernel: Vec::new(), load };
+            return ProvedContact { ids, laws, tangents, polygon, cone, stiffness, kernel: Vec::new(), load };
         }
         let place = |joint: usize| -> usize {
             if joint < m {
                 return joint;
             }
-            // Every joint beyond the normals is the tangential one of a pair.
-            m + system.pairs.iter().position(|pair| pair.plane_tangential() == Some(joint)).unwrap_or_default()
+            // Every joint beyond the normals is a tangential one of a pair.
+            let of = |(i, pair): (usize, &ContactPair)| Some(tangents * i + pair.tangential.clone().position(|own| own == joint)?);
+            m + system.pairs.iter().enumerate().find_map(of).unwrap_or_default()
         };
         let places: Vec<usize> = (0..system.joint_count()).map(place).collect();
         let spread = |of: &dyn Fn(usize) -> f64| {
-            let mut all = DVector::zeros(2 * m);
+            let mut all = DVector::zeros((1 + tangents) * m);
             places.iter().enumerate().for_each(|(joint, &at)| all[at] = of(joint));
             all
         };
-        let mut stiffness = DMatrix::zeros(2 * m, 2 * m);
+        let mut stiffness = DMatrix::zeros((1 + tangents) * m, (1 + tangents) * m);
         for (i, &at) in places.iter().enumerate() {
             for (j, &column) in places.iter().enumerate() {
                 let entry = system.stiffness[(i, j)];
@@ -92,7 +104,14 @@ impl ProvedContact {
             }
         }
         let kernel = kernel(problem, built).iter().map(|motion| spread(&|joint| motion[joint])).collect();
-        ProvedContact { ids, laws, stiffness, kernel, load: spread(&|joint| problem.load[joint]) }
+        let load = spread(&|joint| problem.load[joint]);
+        ProvedContact { ids, laws, tangents, polygon, cone, stiffness, kernel, load }
+    }
+
+    /// Index of z_τ of a pair among the unknowns.
+    pub fn slips(&self, pair: usize) -> Range<usize> {
+        let first = self.ids.len() + self.tangents * pair;
+        first..first + self.tangents
     }
 
     /// R with its kernel exact.

@@ -82,7 +82,10 @@ struct Search<'a> {
 /// What a branch asks for; the state, and the variable that was fixed last.
 pub(super) fn impose(polyhedron: &mut Polyhedron, branch: &Branch, go_on: &mut GoOn) -> (State, Option<usize>) {
     let (mut state, mut pinned) = polyhedron.fix_all(branch.zero.iter().copied(), go_on);
-    if let (Some((variable, up)), State::Feasible) = (branch.sign, state) {
+    for &(variable, up) in &branch.signs {
+        if state != State::Feasible {
+            break;
+        }
         if !up {
             polyhedron.negate(variable);
         }
