@@ -1,6 +1,6 @@
 //! Forces within the laws' bounds that balance the loads on every motion that costs nothing: whether there are any,
-//! and for which multiples of a load. By a linear program in f64: necessary for an answer, neither sufficient nor a
-//! proof.
+//! and for which multiples of a load. By a linear program in f64, in space one with Coulomb's cones: necessary for an answer,
+//! neither sufficient nor a proof.
 
 use nalgebra::DVector;
 
@@ -48,9 +48,9 @@ fn forces(problem: &ContactProblem, motions: &FreeMotions, size: f64) -> Forces 
         }
     };
     for (pair, law) in problem.laws.iter().enumerate() {
-        let tangential = system.pairs[pair].plane_tangential();
+        let tangential = system.pairs[pair].tangential.clone();
         let touched = |joint: usize| !motions.row(joint).is_empty();
-        if !touched(pair) && !tangential.is_some_and(touched) {
+        if !touched(pair) && !tangential.clone().any(touched) {
             continue;
         }
         let normal = program.variable(0.0);
@@ -59,11 +59,24 @@ fn forces(problem: &ContactProblem, motions: &FreeMotions, size: f64) -> Forces 
             program.at_most(vec![(normal, -1.0)], 0.0);
         }
         let (f, c) = (law.friction(), law.fixed_bound() / size);
-        let Some(joint) = tangential.filter(|_| f > 0.0 || c > 0.0) else { continue };
-        let slip = program.variable(0.0);
-        put(slip, joint);
-        for sign in SENSES {
-            program.at_most(vec![(slip, sign), (normal, -f)], c);
+        if f == 0.0 && c == 0.0 {
+            continue;
+        }
+        let friction: Vec<usize> = tangential.clone().map(|_| program.variable(0.0)).collect();
+        friction.iter().zip(tangential).for_each(|(&force, joint)| put(force, joint));
+        match friction[..] {
+            [] => {}
+            [force] => SENSES.iter().for_each(|sign| program.at_most(vec![(force, *sign), (normal, -f)], c)),
+            _ => {
+                let mut bound = vec![(normal, f)];
+                if c > 0.0 {
+                    let fixed = program.variable(0.0);
+                    program.equal(vec![(fixed, 1.0)], c);
+                    bound.push((fixed, 1.0));
+                }
+                let parts: Vec<Vec<(usize, f64)>> = friction.iter().map(|&force| vec![(force, 1.0)]).collect();
+                program.at_least_length(&bound, &parts);
+            }
         }
     }
     Forces { program, balance }

@@ -51,8 +51,16 @@ pub struct TieReport {
 }
 
 /// What a tie-break does.
-pub fn rule_words(tie_break: TieBreak, contact: bool) -> String {
+fn rule_words(tie_break: TieBreak, naming: &Naming) -> String {
+    let (contact, in_space) = match naming {
+        Naming::Contact(_, system) => (true, system.is_in_space()),
+        Naming::Plain(..) => (false, false),
+    };
     let order = match (tie_break, contact) {
+        (TieBreak::Lexicographic, true) if in_space => {
+            "lexicographic: p first, then as if the reserve x^k of every facet had a little more than every x_n"
+        }
+        (TieBreak::Natural, true) if in_space => "natural: p first, then lexicographic in the order x_n, x^0, x^1, …",
         (TieBreak::Lexicographic, true) => {
             "lexicographic: p first, then as if every x+ and x- had a little more than every x_n"
         }
@@ -102,7 +110,7 @@ pub fn ties(naming: &Naming, log: &PivotLog, last: &Point, tie_break: TieBreak) 
         })
         .collect();
     TieReport {
-        rule: rule_words(tie_break, matches!(naming, Naming::Contact(..))),
+        rule: rule_words(tie_break, naming),
         pivots: log.count(),
         ties: tied,
         degenerate,

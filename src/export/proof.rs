@@ -56,7 +56,8 @@ pub fn proof(proof: &Proof, system: &str) -> Value {
     let mut value = json!({"format": "stickslip-proof/1", "system": Hash::of(system).long()});
     let mut put = |key: &str, entry: Value| value[key] = entry;
     if let Some(polygon) = proof.polygon() {
-        let direction = |facet| polygon.direction(facet).iter().map(|part| fraction(&rational(*part))).collect::<Value>();
+        let direction =
+            |facet| polygon.direction(facet).iter().map(|part| fraction(&rational(*part))).collect::<Value>();
         put("directions", (0..polygon.half()).map(direction).collect());
     }
     match &proof.claim {

@@ -49,6 +49,8 @@ pub struct AllAnswers {
     pub total: u64,
     /// Schemes that could not be decided.
     pub undecided: u64,
+    /// In space: the facets of the polygon whose answers these are.
+    pub facets: Option<usize>,
 }
 
 /// A set of answers with more than one element: the hull of its corners, and from there on along its directions.
@@ -100,6 +102,7 @@ impl Prepared {
         }
         too_many("contact pairs", system.pair_count(), MOST_PAIRS)?;
         let problem = contact_problem(system, &factors(self, values), values).under(Rules { cone: false, ..rules });
+        let facets = system.is_in_space().then(|| problem.polygon.facets());
         let mut steps = 0u64;
         let found = enumerate(&problem, &mut |progress| {
             steps += 1;
@@ -122,6 +125,7 @@ impl Prepared {
                     cut: found.cut,
                     total: found.total,
                     undecided: 0,
+                    facets,
                 });
             }
         }
@@ -149,6 +153,7 @@ impl Prepared {
             cut: found.cut,
             total: found.total,
             undecided: found.undecided,
+            facets,
         })
     }
 
@@ -222,5 +227,6 @@ fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers,
         cut: found.cut,
         total: 1u64.checked_shl(lcp.size() as u32).unwrap_or(u64::MAX),
         undecided: found.undecided,
+        facets: None,
     })
 }

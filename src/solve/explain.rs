@@ -119,12 +119,12 @@ impl Prepared {
         let RunData::Contact { problem, .. } = &solved.run else {
             return None;
         };
-        let plane = |report: &&RayReport| report.class == RayClass::Mechanism && !problem.system.is_in_space();
-        let report = solved.ray.as_deref().filter(plane)?;
+        let mechanism = |report: &&RayReport| report.class == RayClass::Mechanism;
+        let report = solved.ray.as_deref().filter(mechanism)?;
         let budget = Budget::new(watch, REMEDY_TIME);
         let solves = |changed: &ContactProblem| {
             let rules = Rules { engine: Engine::Scheme, ..Rules::default() };
-            self.attempt_contact(changed, (rules, Extent::Whole), &budget).is_ok_and(|found| found.answer.is_answer())
+            self.attempt_contact(changed, (rules, Extent::Whole), &budget).is_ok_and(|found| found.stands(changed.cone))
         };
         let parts = report.mode.as_ref().map_or(&[][..], |mode| mode.parts.as_slice());
         Some(remedies(problem, &FreeMotions::new(&problem.system, self.built()), parts, &solves, &budget))

@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 
 use super::style::{Role, Style};
-use crate::contact::schemes::critical::{Coverage, CriticalFriction};
 use crate::contact::polygon::{Polygon, angle, degrees};
+use crate::contact::schemes::critical::{Coverage, CriticalFriction};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::text::number::short;
 

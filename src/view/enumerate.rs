@@ -26,7 +26,9 @@ fn states(answer: &Answer) -> String {
 fn motion(pairs: &[PairDirection]) -> String {
     let mut words = Vec::new();
     for pair in pairs {
-        for (name, value) in [("z_n", pair.z_n), ("z_t", pair.z_t.scalar())] {
+        let slip = pair.slip();
+        let names: &[&str] = if slip.len() == 1 { &["z_t"] } else { &["z_t1", "z_t2"] };
+        for (name, value) in std::iter::once((&"z_n", pair.z_n)).chain(names.iter().zip(slip)) {
             if value != 0.0 {
                 words.push(format!("{name} {} by {}", pair.pair, short(value)));
             }
@@ -109,6 +111,11 @@ pub fn write(out: &mut dyn Write, all: &AllAnswers, style: &Style) -> io::Result
     let mut text = format!("{}; {}{of} working schemes solved{cut}{doubt}", count(all), all.visited);
     if !all.complete {
         text = format!("stopped: there may be more. So far {text}");
+    }
+    if let Some(facets) = all.facets {
+        text += &format!(
+            "; all of it on the polygon of {facets} facets, not on the cone, whose answer `solve` ends with (`set facets`)"
+        );
     }
     style.paragraph(out, Role::Muted, &text)?;
     if all.answers.len() > 1 {

@@ -9,8 +9,7 @@ use crate::solve::exact::Exactly;
 use crate::text::number::short;
 
 fn signs(signs: &[ExactSign]) -> String {
-    let words: Vec<String> =
-        signs.iter().map(|sign| format!("{} = {}", sign.name, short(sign.value))).collect();
+    let words: Vec<String> = signs.iter().map(|sign| format!("{} = {}", sign.name, short(sign.value))).collect();
     words.join(", ")
 }
 

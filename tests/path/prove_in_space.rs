@@ -122,7 +122,8 @@ fn is_collapse(system: &Value, proof: &Value) -> bool {
     let load = &system["loads"]["all"]["vector"];
     let work: BigRational = (0..z.len()).map(|i| -rational(load[i].as_f64().unwrap()) * &z[i]).sum();
     let fixed = |i: usize| number("cohesion", i) + number("bound", i);
-    let taken = (0..m).map(|i| fixed(i) * fixed(i) * square(i)).fold(BigRational::zero(), |a, b| if a > b { a } else { b });
+    let taken =
+        (0..m).map(|i| fixed(i) * fixed(i) * square(i)).fold(BigRational::zero(), |a, b| if a > b { a } else { b });
     free && fits && work.is_positive() && &work * &work > taken
 }
 
@@ -180,7 +181,8 @@ fn what_the_commands_prove_of_the_scenarios_in_space() {
         if !set.is_empty() {
             report(&mut session, set).unwrap();
         }
-        let (said, texts) = proved(&mut session, words, folder.path()).unwrap_or_else(|why| panic!("{scenario}: {why}"));
+        let (said, texts) =
+            proved(&mut session, words, folder.path()).unwrap_or_else(|why| panic!("{scenario}: {why}"));
         let proof: Value = serde_json::from_str(&texts.0).unwrap();
         assert_eq!(proof.get("directions").is_none(), begins.starts_with("collapse"), "{scenario}: {said}");
         let words = checked(&[texts]).remove(0).unwrap();

@@ -136,7 +136,7 @@ fn where_answers_are_proved_to_be_unique_there_is_no_second() {
                 values.insert("f".to_owned(), f);
                 values.insert("T".to_owned(), t);
                 let unique = case.prepared.case(&case.scenario, &values).is_unique(&proofs);
-                let found = case.prepared.all_answers(&values, &Quiet).expect("few pairs");
+                let found = case.prepared.all_answers(&values, case.scenario.rules, &Quiet).expect("few pairs");
                 several += usize::from(found.answers.len() > 1);
                 proved += usize::from(unique);
                 let loose = kind == Kind::Loose;

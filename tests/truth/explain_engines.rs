@@ -195,7 +195,8 @@ fn no_claim_too_strong(count: usize, seed: u64) {
                 }
             }
             Some(ray) => {
-                let all = prepared.all_answers(&scenario.parameter_values(), &Quiet).expect("few pairs");
+                let all =
+                    prepared.all_answers(&scenario.parameter_values(), scenario.rules, &Quiet).expect("few pairs");
                 match ray.verdict {
                     Some(Verdict::Certified | Verdict::Proved) => assert!(
                         all.answers.is_empty(),
@@ -235,7 +236,7 @@ fn a_force_that_only_p_moves_does_not_fall_by_the_noise_of_p() {
     let solved = solve(&prepared, &scenario, Engine::Scheme);
     let ray = solved.answer.ray.expect("a ray");
     assert_eq!(ray.class, RayClass::Mechanism);
-    let all = prepared.all_answers(&scenario.parameter_values(), &Quiet).expect("few pairs");
+    let all = prepared.all_answers(&scenario.parameter_values(), scenario.rules, &Quiet).expect("few pairs");
     assert!(all.answers.is_empty());
 }
 

@@ -293,9 +293,7 @@ impl<'a> Search<'a> {
             })
         };
         let block = |factor: &dyn Fn(usize) -> f64| {
-            DMatrix::from_fn(k, k, |i, j| {
-                entry(&rows[i].parts, &rows[j]) + growing_part(&rows[i], &rows[j], factor)
-            })
+            DMatrix::from_fn(k, k, |i, j| entry(&rows[i].parts, &rows[j]) + growing_part(&rows[i], &rows[j], factor))
         };
         let start = block(&|pair| self.base[pair]);
         let lu = start.lu();
@@ -306,7 +304,8 @@ impl<'a> Search<'a> {
         if lu.determinant() < 0.0 {
             return Root::At(0.0);
         }
-        let growing: Vec<usize> = (0..k).filter(|i| rows[*i].friction.is_some_and(|(pair, _)| self.growth[pair] != 0.0)).collect();
+        let growing: Vec<usize> =
+            (0..k).filter(|i| rows[*i].friction.is_some_and(|(pair, _)| self.growth[pair] != 0.0)).collect();
         if growing.is_empty() {
             return Root::None;
         }

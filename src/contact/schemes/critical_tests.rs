@@ -76,6 +76,7 @@ fn large_problems_are_sampled() {
     let got = critical(&system);
     assert!((got.value.unwrap() - 1.25).abs() < 1e-9, "{got:?}");
     assert!(matches!(got.coverage, Coverage::Sampled { seed: 1, .. }));
-    let stopped = critical_friction(&system, Polygon::PLANE, &|f| vec![f; m], (4000, 1), &mut |_| ControlFlow::Break(()));
+    let stopped =
+        critical_friction(&system, Polygon::PLANE, &|f| vec![f; m], (4000, 1), &mut |_| ControlFlow::Break(()));
     assert!(!stopped.complete);
 }

@@ -102,9 +102,7 @@ impl Tangential {
             (Tangential::Stick, _) => "stick".to_owned(),
             (Tangential::Slip(0), true) => "slip+".to_owned(),
             (_, true) => "slip-".to_owned(),
-            (_, false) => {
-                self.facets(polygon).iter().fold("slip".to_owned(), |word, facet| format!("{word}^{facet}"))
-            }
+            (_, false) => self.facets(polygon).iter().fold("slip".to_owned(), |word, facet| format!("{word}^{facet}")),
         }
     }
 }
@@ -147,7 +145,10 @@ mod tests {
                 let holds = |slip: [f64; 2]| {
                     let value = |form: usize| forms[form][0] * slip[0] + forms[form][1] * slip[1];
                     conditions.zero.iter().all(|form| value(*form).abs() < 1e-12)
-                        && conditions.signs.iter().all(|(form, up)| if *up { value(*form) > 1e-6 } else { value(*form) < -1e-6 })
+                        && conditions
+                            .signs
+                            .iter()
+                            .all(|(form, up)| if *up { value(*form) > 1e-6 } else { value(*form) < -1e-6 })
                 };
                 for facet in 0..polygon.facets() {
                     let [a, b] = polygon.direction(facet);

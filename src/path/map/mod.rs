@@ -19,9 +19,9 @@ use super::quantity::{Facts, Value};
 use super::route::Route;
 use super::start::{PathError, plane_system};
 use crate::answer::record::{RayClass, State, Verdict};
-use crate::model::rules::Rules;
 use crate::model::groups::Groups;
 use crate::model::quantity::Quantity;
+use crate::model::rules::Rules;
 use crate::solve::Case;
 
 /// Other answers are looked for in maps of at most so many pairs …

@@ -18,7 +18,9 @@ pub enum CheckHow {
 
 /// Show the numbers of the fresh check of the answer; `check exact` proves or refutes it
 ///
-/// `check exact` solves the final working scheme in exact arithmetic from the f64 data and tells every sign.
+/// `check exact` solves the final working scheme in exact arithmetic from the f64 data and tells every sign. In space it is
+/// the scheme of the friction polygon, its directions taken as the fractions they are stored as; the answer on the cone that
+/// Newton's method goes on to has the figures of `check`.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  check\n  check exact")]
 pub struct Check {

@@ -21,7 +21,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// Goes through all working schemes in exact arithmetic, cutting what cannot be completed. Where answers lie side by
 /// side it tells the corners of the continuum and the directions in which it has no end. Ctrl-C shows what was found
 /// so far. `enumerate 2` makes the second answer the one that `pairs`, `plot` and the others show; `solve` goes back
-/// to Lemke's.
+/// to Lemke's. In space the answers are those of the friction polygon (`set facets`), not of the cone.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  load klarbring; enumerate; enumerate 2; pairs")]
 pub struct Enumerate {
@@ -52,6 +52,9 @@ struct AnswersReport<'a> {
     cut: u64,
     total: u64,
     undecided: u64,
+    /// Of the polygon whose answers they are, in space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    facets: Option<usize>,
 }
 
 #[derive(Serialize)]
@@ -94,6 +97,7 @@ impl<'a> AnswersReport<'a> {
             cut: all.cut,
             total: all.total,
             undecided: all.undecided,
+            facets: all.facets,
         }
     }
 }

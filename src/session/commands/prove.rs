@@ -23,6 +23,9 @@ use crate::text::words::short;
 /// all the answers, or there is none. Beside it FILE.system.json holds the numbers that the proof is about, as a
 /// scenario; `export system` writes the same.
 ///
+/// In space answers are those of the friction polygon, whose directions the proof gives; a collapse is proved on Coulomb's
+/// cone itself where it can be.
+///
 /// `examples/check_proof.py FILE.json` reads both and trusts neither: it needs Python and nothing else. What is proved
 /// is proved of these doubles, each taken as the fraction it is; how far they are from the structure is not part of it.
 /// An answer has at most 120 pairs and 48 motions that only contact holds (an LCP 240 rows), a proof of all answers at most
@@ -142,7 +145,11 @@ fn sentence(proof: &Proof) -> String {
             "{claimed} All of it is about the polygon of {} facets with the directions that the proof gives, not about the \
              cone{}.",
             polygon.facets(),
-            if matches!(proof.claim, Claim::Answer(_)) { ", to which Newton's method goes on from this answer" } else { "" }
+            if matches!(proof.claim, Claim::Answer(_)) {
+                ", to which Newton's method goes on from this answer"
+            } else {
+                ""
+            }
         ),
     }
 }

@@ -9,6 +9,8 @@ use crate::session::{CommandError, Next, Output, Session};
 use crate::view;
 
 /// Show what one more unit of a parameter does to forces and slips
+///
+/// Within the working scheme. In space it is that on Coulomb's cone, where friction turns with the slip.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  sensitivity\n  sensitivity f")]
 pub struct Sensitivity {

@@ -104,7 +104,12 @@ impl Forms {
             unknowns: (1 + contact.tangents) * m,
             names: contact.ids.iter().map(named("z_n")).chain(slips).collect(),
             forms: Vec::new(),
-            signed: contact.laws.iter().map(|law| !law.is_bilateral()).chain(vec![false; contact.tangents * m]).collect(),
+            signed: contact
+                .laws
+                .iter()
+                .map(|law| !law.is_bilateral())
+                .chain(vec![false; contact.tangents * m])
+                .collect(),
             zero: (0..m).filter(|&pair| contact.laws[pair].is_bilateral()).collect(),
             groups: Vec::new(),
         }
@@ -123,7 +128,10 @@ impl Forms {
         if !signs || self.zero.iter().any(|&variable| !values[variable].is_zero()) {
             return None;
         }
-        self.groups.iter().map(|group| Some(&*group.branches.iter().find(|branch| branch.holds(values))?.name)).collect()
+        self.groups
+            .iter()
+            .map(|group| Some(&*group.branches.iter().find(|branch| branch.holds(values))?.name))
+            .collect()
     }
 
     /// All signs but those of the slips and all that is zero in every answer, nothing decided yet; beside the state the

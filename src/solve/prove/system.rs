@@ -86,7 +86,9 @@ impl ProvedContact {
                 return joint;
             }
             // Every joint beyond the normals is a tangential one of a pair.
-            let of = |(i, pair): (usize, &ContactPair)| Some(tangents * i + pair.tangential.clone().position(|own| own == joint)?);
+            let of = |(i, pair): (usize, &ContactPair)| {
+                Some(tangents * i + pair.tangential.clone().position(|own| own == joint)?)
+            };
             m + system.pairs.iter().enumerate().find_map(of).unwrap_or_default()
         };
         let places: Vec<usize> = (0..system.joint_count()).map(place).collect();
