@@ -4,7 +4,8 @@ use std::io::{self, Write};
 
 use super::pairs::state_words;
 use super::style::{Role, Style};
-use crate::answer::record::{Answer, PairDirection};
+use crate::answer::record::{Answer, PairDirection, PairState};
+use crate::contact::polygon::degrees;
 use crate::solve::all_answers::{AllAnswers, Continuum, Moving};
 use crate::text::number::short;
 
@@ -13,12 +14,17 @@ fn vector(z: &[f64]) -> String {
     format!("({})", z.join(", "))
 }
 
-/// "c1 open, c2 slip+", or z of a bare LCP.
+/// "c1 open, c2 slip+", in space "c2 slip towards 45°", or z of a bare LCP.
 fn states(answer: &Answer) -> String {
     if let Some(solution) = &answer.solution {
         return format!("z = {}", vector(&solution.z));
     }
-    let words: Vec<String> = answer.pairs.iter().map(|pair| format!("{} {}", pair.id, state_words(pair))).collect();
+    let towards = |pair: &PairState| match pair.direction() {
+        Some(direction) => format!(" towards {}", degrees(direction)),
+        None => String::new(),
+    };
+    let word = |pair: &PairState| format!("{} {}{}", pair.id, state_words(pair), towards(pair));
+    let words: Vec<String> = answer.pairs.iter().map(word).collect();
     words.join(", ")
 }
 

@@ -1,8 +1,9 @@
 //! Balance of every part of a structure by hand: loads + contact forces + reactions (of supports and springs) = 0, in
-//! x, in y and about a point, each part (what elements and ties join) by itself. Uses nothing of the finite elements but the
+//! every direction and about every axis through a point (in the plane in x, in y and about a point), each part (what elements and ties join) by itself. Uses nothing of the finite elements but the
 //! answer they gave.
 
-use stickslip::answer::record::Answer;
+use stickslip::answer::record::{Answer, PairState};
+use stickslip::model::pair::Pair;
 use stickslip::model::parameter::ParameterValues;
 use stickslip::model::scenario::{Scenario, Source};
 use stickslip::model::structure::{Component, ElementLoad, Load, LoadCase, Structure};
@@ -35,29 +36,72 @@ fn parts(structure: &Structure) -> Vec<usize> {
 /// were all strain of one element. (The check asks for 1e-9 of a force that is there.)
 fn floor(structure: &Structure, answer: &Answer) -> f64 {
     let moved = answer.displacements.as_ref().expect("displacements");
-    let moved = moved.iter().fold(0f64, |a, d| a.max(d.ux.abs()).max(d.uy.abs()));
+    let moved = moved.iter().fold(0f64, |a, d| d.all()[..3].iter().fold(a, |a, u| a.max(u.abs())));
     let stiffest = structure.elements.iter().fold(0f64, |a, element| {
         let at = |k: usize| structure.nodes[element.nodes[k]].position;
-        let length = (at(1)[0] - at(0)[0]).hypot(at(1)[1] - at(0)[1]);
-        let across = if element.nodes.len() == 2 { 1.0 } else { length };
+        let length = length(minus(at(1), at(0)));
+        let across = length.powi(i32::from(element.shape().dimension()) - 1);
         a.max(structure.materials[element.material].youngs_modulus * element.area() * across / length)
     });
     1e-6 * stiffest * moved
 }
 
-/// Length and middle of a bar, area and centroid of a polygon.
-fn measure_and_middle(corners: Vec<[f64; 2]>) -> (f64, [f64; 2]) {
+type Vector = [f64; 3];
+
+fn minus(a: Vector, b: Vector) -> Vector {
+    [0, 1, 2].map(|i| a[i] - b[i])
+}
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn length(a: Vector) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Length and middle of a bar, area and centroid of a polygon in the plane, volume and centroid of a tetrahedron or hexahedron
+/// with straight sides.
+fn measure_and_middle(solid: bool, corners: &[Vector]) -> (f64, Vector) {
     if let [a, b] = corners[..] {
-        return ((b[0] - a[0]).hypot(b[1] - a[1]), [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]);
+        return (length(minus(b, a)), [0, 1, 2].map(|i| 0.5 * (a[i] + b[i])));
     }
-    let next = corners.iter().cycle().skip(1);
-    let mut sum = [0.0; 3];
-    for (a, b) in corners.iter().zip(next) {
-        let twice = a[0] * b[1] - b[0] * a[1];
-        let parts = [0.5 * twice, twice * (a[0] + b[0]) / 6.0, twice * (a[1] + b[1]) / 6.0];
-        sum.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+    // Pieces of known measure and centroid: tetrahedra round the diagonal 0–6, triangles round corner 0.
+    let pieces: Vec<Vec<usize>> = match (solid, corners.len()) {
+        (true, 8 | 20) => {
+            let ring = [1, 2, 3, 7, 4, 5, 1];
+            ring.windows(2).map(|edge| vec![0, edge[0], edge[1], 6]).collect()
+        }
+        (true, _) => vec![vec![0, 1, 2, 3]],
+        (false, _) => (1..corners.len() - 1).map(|k| vec![0, k, k + 1]).collect(),
+    };
+    let mut sum = [0.0; 4];
+    for piece in pieces {
+        let sides: Vec<Vector> = piece[1..].iter().map(|&k| minus(corners[k], corners[piece[0]])).collect();
+        let measure = match sides[..] {
+            [a, b] => 0.5 * cross(a, b)[2],
+            [a, b, c] => dot(cross(a, b), c) / 6.0,
+            _ => unreachable!("triangles and tetrahedra"),
+        };
+        sum[3] += measure;
+        for i in 0..3 {
+            sum[i] += measure * piece.iter().map(|&k| corners[k][i]).sum::<f64>() / piece.len() as f64;
+        }
     }
-    (sum[0], [sum[1] / sum[0], sum[2] / sum[0]])
+    (sum[3], [0, 1, 2].map(|i| sum[i] / sum[3]))
+}
+
+/// The force of a pair on its second side.
+fn force_of(pair: &Pair, state: &PairState) -> Vector {
+    let friction = state.friction();
+    [0, 1, 2].map(|i| {
+        let along: f64 = pair.tangents.iter().zip(&friction).map(|(t, x_t)| x_t * t[i]).sum();
+        state.x_n * pair.normal[i] + along
+    })
 }
 
 /// Worst imbalance of any part, relative to the sum of the forces (times lever arms) on the part that carries
@@ -68,52 +112,51 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
     };
     let label = parts(structure);
     let n = structure.nodes.len();
-    let at = |node: usize| structure.nodes[node].in_plane();
-    // [F_x, F_y, M about the origin of the axes shifted to the part's first node], and sums of magnitudes.
-    let mut sum = vec![[0.0; 3]; n];
+    let at = |node: usize| structure.nodes[node].position;
+    // Force, moment about the part's first node, and sums of magnitudes.
+    let mut sum = vec![[[0.0; 3]; 2]; n];
     let mut size = vec![[0.0f64; 2]; n];
-    let mut add = |node: usize, place: [f64; 2], force: [f64; 2], moment: f64| {
+    let mut add = |node: usize, place: Vector, force: Vector, moment: Vector| {
         let part = label[node];
-        let origin = at(part);
-        let arm = [place[0] - origin[0], place[1] - origin[1]];
-        sum[part][0] += force[0];
-        sum[part][1] += force[1];
-        sum[part][2] += arm[0] * force[1] - arm[1] * force[0] + moment;
-        size[part][0] += force[0].hypot(force[1]);
-        size[part][1] += arm[0].hypot(arm[1]) * force[0].hypot(force[1]) + moment.abs();
+        let arm = minus(place, at(part));
+        let about = cross(arm, force);
+        for i in 0..3 {
+            sum[part][0][i] += force[i];
+            sum[part][1][i] += about[i] + moment[i];
+        }
+        size[part][0] += length(force);
+        size[part][1] += length(arm) * length(force) + length(moment);
     };
     for case in &structure.load_cases {
         let factor = case.factor.value(values);
+        let scaled = |vector: &Vector| vector.map(|part| factor * part);
         for load in &case.loads {
             match load {
-                Load::Nodal { node, force, moment } => {
-                    add(*node, at(*node), [force[0], force[1]].map(|f| factor * f), factor * moment[2])
-                }
+                Load::Nodal { node, force, moment } => add(*node, at(*node), scaled(force), scaled(moment)),
                 Load::Element { element, load: ElementLoad::Line { range: [from, to], value: [first, last] } } => {
                     let [a, b] = [0, 1].map(|end| structure.elements[*element].nodes[end]);
-                    let ([xa, ya], [xb, yb]) = (at(a), at(b));
-                    let length = (xb - xa).hypot(yb - ya);
+                    let (start, along) = (at(a), minus(at(b), at(a)));
                     // Simpson's rule is exact for the force and its moment.
                     for (s, weight) in [(*from, 1.0), (0.5 * (from + to), 4.0), (*to, 1.0)] {
-                        let t = s / length;
-                        let place = [xa + t * (xb - xa), ya + t * (yb - ya)];
+                        let t = s / length(along);
+                        let place = [0, 1, 2].map(|i| start[i] + t * along[i]);
                         let share = if to > from { (s - from) / (to - from) } else { 0.0 };
-                        let q = [0, 1].map(|i| first[i] + share * (last[i] - first[i]));
-                        add(a, place, q.map(|q| factor * q * weight * (to - from) / 6.0), 0.0);
+                        let q = [0, 1, 2].map(|i| first[i] + share * (last[i] - first[i]));
+                        add(a, place, q.map(|q| factor * q * weight * (to - from) / 6.0), [0.0; 3]);
                     }
                 }
                 Load::Element { element, load: ElementLoad::Point { distance, force, moment } } => {
                     let [a, b] = [0, 1].map(|end| at(structure.elements[*element].nodes[end]));
-                    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-                    let place = [0, 1].map(|i| a[i] + distance / length * (b[i] - a[i]));
-                    let node = structure.elements[*element].nodes[0];
-                    add(node, place, [force[0], force[1]].map(|f| factor * f), factor * moment[2]);
+                    let along = minus(b, a);
+                    let place = [0, 1, 2].map(|i| a[i] + distance / length(along) * along[i]);
+                    add(structure.elements[*element].nodes[0], place, scaled(force), scaled(moment));
                 }
                 Load::Element { element, load: ElementLoad::Body(value) } => {
                     let element = &structure.elements[*element];
-                    let (measure, middle) = measure_and_middle(element.nodes.iter().map(|&node| at(node)).collect());
+                    let corners: Vec<Vector> = element.nodes.iter().map(|&node| at(node)).collect();
+                    let (measure, middle) = measure_and_middle(element.shape().is_solid(), &corners);
                     let volume = measure * element.area();
-                    add(element.nodes[0], middle, [value[0], value[1]].map(|b| factor * b * volume), 0.0);
+                    add(element.nodes[0], middle, value.map(|b| factor * b * volume), [0.0; 3]);
                 }
                 // They pull one part of a structure against another, and against what holds it.
                 Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
@@ -121,23 +164,23 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
         }
     }
     for (pair, state) in structure.pairs.iter().zip(&answer.pairs) {
-        let (n, t) = (pair.normal, pair.tangents[0]);
-        let force = [0, 1].map(|i| state.x_n * n[i] + state.x_t * t[i]);
+        let force = force_of(pair, state);
         for &(node, weight) in &pair.weights {
-            add(node, at(node), force.map(|f| weight * f), 0.0);
+            add(node, at(node), force.map(|f| weight * f), [0.0; 3]);
         }
     }
     let find = |id: &str| structure.nodes.iter().position(|node| node.id == id);
     for reaction in answer.reactions.as_ref().expect("reactions") {
         let node = find(&reaction.node).expect("a node");
-        add(node, at(node), [reaction.fx, reaction.fy], reaction.m);
+        let [fz, mx, my] = reaction.space.unwrap_or_default();
+        add(node, at(node), [reaction.fx, reaction.fy, fz], [mx, my, reaction.m]);
     }
     // A tie that joins nodes at different places hands over force without its moment: no balance of moments there.
     let mut moments = vec![true; n];
     for tie in &structure.ties {
         let first = at(tie.nodes[0]);
         let apart = tie.nodes.iter().any(|&node| at(node) != first);
-        let whole = [Component::X, Component::Y];
+        let whole = [Component::X, Component::Y, Component::Z];
         if apart && whole.iter().any(|c| tie.components.contains(c)) {
             moments[label[tie.nodes[0]]] = false;
         }
@@ -150,11 +193,12 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
     let is_structure = |part: &usize| !structure.yielding_ground.contains(part);
     let mut worst = 0f64;
     for part in (0..n).filter(is_structure) {
+        let most = |of: Vector| of.iter().fold(0f64, |most, part| most.max(part.abs()));
         if force > 0.0 {
-            worst = worst.max(sum[part][0].abs() / force).max(sum[part][1].abs() / force);
+            worst = worst.max(most(sum[part][0]) / force);
         }
         if moment > 0.0 && moments[part] {
-            worst = worst.max(sum[part][2].abs() / moment);
+            worst = worst.max(most(sum[part][1]) / moment);
         }
     }
     worst
@@ -236,25 +280,23 @@ pub fn incompatibility(scenario: &Scenario, values: &ParameterValues, answer: &A
         return 0.0;
     };
     let all = answer.displacements.as_ref().expect("displacements");
-    let u = |node: usize| [all[node].ux, all[node].uy, all[node].rz];
-    let mut largest = all.iter().fold(0f64, |a, d| a.max(d.ux.abs()).max(d.uy.abs()));
+    // In the order of `Component`: x, y, z, rx, ry, rz.
+    let u = |node: usize| all[node].all();
+    let mut largest = (0..all.len()).flat_map(|node| u(node)[..3].to_vec()).fold(0f64, |a, u| a.max(u.abs()));
     let mut off = 0f64;
     for (pair, state) in structure.pairs.iter().zip(&answer.pairs) {
         let gap = pair.law.numbers().into_iter().find(|(key, _)| *key == "gap");
         let gap = gap.map_or(0.0, |(_, gap)| gap.value(values));
-        let along = |a: [f64; 3]| -> f64 {
-            pair.weights.iter().map(|&(node, weight)| weight * (a[0] * u(node)[0] + a[1] * u(node)[1])).sum()
+        let along = |a: Vector| -> f64 {
+            pair.weights.iter().map(|&(node, weight)| weight * (0..3).map(|i| a[i] * u(node)[i]).sum::<f64>()).sum()
         };
         largest = largest.max(gap).max(state.z_n);
         off = off.max((along(pair.normal) + gap - state.z_n).abs());
-        off = off.max((along(pair.tangents[0]) - state.z_t).abs());
+        for (tangent, slip) in pair.tangents.iter().zip(state.slip()) {
+            off = off.max((along(*tangent) - slip).abs());
+        }
     }
-    let part = |component: Component| match component {
-        Component::X => 0,
-        Component::Y => 1,
-        Component::Rz => 2,
-        other => panic!("{other:?} in the plane"),
-    };
+    let part = |component: Component| Component::ALL.iter().position(|own| *own == component).expect("a component");
     for support in &structure.supports {
         let settles = |case: &LoadCase| -> f64 {
             let own = case.loads.iter().map(|load| match load {

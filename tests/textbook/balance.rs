@@ -42,7 +42,7 @@ pub fn check(case: &Case, set: &[(&str, f64)], rules: Rules) -> bool {
 fn embedded_structures_balance() {
     for name in embedded::names() {
         let case = Case::embedded(name);
-        // The balance by hand knows the plane; structures in space have theirs in `space_scenarios.rs`.
+        // In space the laws are those of a cone: below.
         if !matches!(&case.scenario.source, Source::Structure(structure) if structure.dimension == Dimension::Plane) {
             continue;
         }
@@ -60,6 +60,40 @@ fn embedded_structures_balance() {
         }
         assert!(answers >= 5, "{name}: only {answers} answers");
     }
+}
+
+/// Six sums of forces and moments for every part, and the displacements against the pairs.
+#[test]
+fn embedded_structures_in_space_balance() {
+    let mut answers = 0;
+    for name in embedded::names() {
+        let case = Case::embedded(name);
+        if !matches!(&case.scenario.source, Source::Structure(structure) if structure.dimension == Dimension::Space) {
+            continue;
+        }
+        let ranges: Vec<(String, f64, f64)> =
+            case.scenario.parameters.iter().filter_map(|(name, p)| Some((name.clone(), p.min?, p.max?))).collect();
+        let middles = ranges.iter().map(|(name, min, max)| vec![(name.as_str(), min + 0.4 * (max - min))]);
+        for set in std::iter::once(Vec::new()).chain(middles) {
+            let mut values = case.scenario.parameter_values();
+            values.extend(set.iter().map(|(name, value)| ((*name).to_owned(), *value)));
+            let case = case.at(&values);
+            let answer = case.solve_under(&set, case.scenario.rules);
+            if !answer.is_answer() {
+                continue;
+            }
+            answers += 1;
+            let off = imbalance(&case.scenario, &values, &answer);
+            assert!(off < 1e-9, "{name} {set:?}: out of balance by {off:e}");
+            let off = incompatibility(&case.scenario, &values, &answer);
+            assert!(off < 1e-9, "{name} {set:?}: displacements and pairs differ by {off:e}");
+            let mut wrong = answer.clone();
+            let pressed = wrong.pairs.iter_mut().max_by(|a, b| a.x_n.total_cmp(&b.x_n)).expect("pairs");
+            pressed.x_n *= 1.0001;
+            assert!(imbalance(&case.scenario, &values, &wrong) > 1e-7, "{name}");
+        }
+    }
+    assert!(answers >= 12, "{answers}");
 }
 
 #[test]
