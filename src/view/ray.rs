@@ -7,6 +7,7 @@ use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{PairDirection, Ray, RayClass, Slip, VariableRate, Verdict};
 use crate::answer::rounding::denoised;
+use crate::contact::polygon::{angle, degrees};
 use crate::contact::system::ContactSystem;
 use crate::explain::mode::{PartMotion, pair_words};
 use crate::explain::proof::Certificate;
@@ -39,16 +40,20 @@ pub fn verdict_meaning(verdict: Option<Verdict>) -> &'static str {
     }
 }
 
-/// What a pair does in a ray; `None` where it does not move.
-pub fn motion_words(direction: &PairDirection) -> Option<&'static str> {
+/// What a pair does in a ray, in space with the direction of its slip from t1 towards t2; `None` where it does not move.
+pub fn motion_words(direction: &PairDirection) -> Option<String> {
     let moves = |value: f64| denoised(value, 1.0) != 0.0;
-    Some(match (moves(direction.z_n), moves(direction.z_t.scalar())) {
+    let words = match (moves(direction.z_n), moves(direction.z_t.scalar())) {
         (false, false) => return None,
         (true, true) => "parts and slips",
         (true, false) => "parts",
         _ if matches!(direction.z_t, Slip::Space(_)) => "slips",
         _ if direction.z_t.scalar() > 0.0 => "slips +",
         _ => "slips -",
+    };
+    Some(match direction.z_t {
+        Slip::Space(slip) if moves(direction.z_t.scalar()) => format!("{words} towards {}", degrees(angle(slip))),
+        _ => words.to_owned(),
     })
 }
 
@@ -108,7 +113,7 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
             Cell::from(direction.pair.as_str()),
             Cell::number(direction.z_n),
             Cell::number(direction.z_t.scalar()),
-            Cell::from(*motion),
+            Cell::from(motion.as_str()),
         ]));
     }
     table.write(out, style)?;
