@@ -10,7 +10,7 @@ export CARGO_TARGET_DIR ?= $(CURDIR)/target
 version := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
 built := $(CARGO_TARGET_DIR)
 packages := $(built)/packages
-share := $(built)/share
+share := $(CURDIR)/target/share
 name := stickslip-$(version)-$(TARGET)
 
 .PHONY: release crate static deb wheel share checksums
