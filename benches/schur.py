@@ -4,6 +4,7 @@
     pip install -r benches/requirements.txt        # python-mumps needs the library: libmumps-seq-dev, libopenblas-dev
     cargo build --release --example measure
     RAYON_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1 python benches/schur.py [--pairs 401 1000 2000]
+    … python benches/schur.py --bricks 30 30 10         # a block of bricks on a plane in their place
 
 Seconds of the processor, one thread each: those of the clock depend on what else the machine does. Also LAPACK's Cholesky factorization and eigenvalues of a dense matrix of the order of R.
 """
@@ -58,17 +59,36 @@ def pardiso(k):
     return solver
 
 
-def measure(arguments, pairs):
-    nx, ny, width, height = PLATES[pairs]
+def exported(arguments, words):
+    """What `measure` says of a model, its K_m and C."""
     with tempfile.TemporaryDirectory() as folder:
-        words = [arguments.program, "schur", nx, ny, width, height, folder]
+        words = [arguments.program, *words, folder]
         done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=True)
         own = json.loads(done.stdout)
         row, column, value = terms(f"{folder}/K.txt")
         lower = sparse.coo_matrix((value, (row, column))).tocsr()
         k = (lower + sparse.tril(lower, -1).T).tocsr()
         row, column, value = terms(f"{folder}/C.txt")
-        c = sparse.coo_matrix((value, (row, column)), shape=(k.shape[0], 2 * pairs)).tocsr()
+        c = sparse.coo_matrix((value, (row, column)), shape=(k.shape[0], column.max() + 1)).tocsr()
+    return own, k, c
+
+
+def measure_bricks(arguments):
+    nx, ny, nz = arguments.bricks
+    own, k, c = exported(arguments, ["space", nx, ny, nz, 8])
+    print(json.dumps(own))
+    report = {"unknowns": k.shape[0], "joints": c.shape[1]}
+    for name, work in (("MUMPS Schur", lambda: mumps_schur(k, c)), ("PARDISO factor", lambda: pardiso(k))):
+        try:
+            report[name] = min(processor(work)[0] for _ in range(arguments.repetitions))
+        except ImportError as error:
+            report[name] = str(error)
+    print(json.dumps(report))
+
+
+def measure(arguments, pairs):
+    nx, ny, width, height = PLATES[pairs]
+    own, k, c = exported(arguments, ["schur", nx, ny, width, height])
     line = [pairs, k.shape[0], f"{own['whole']['processor']:.2f}", f"{own['peak_megabytes']:.0f}"]
     for name, work in (("MUMPS", lambda: mumps_schur(k, c)), ("PARDISO", lambda: pardiso(k))):
         try:
@@ -88,7 +108,10 @@ def main():
     parser.add_argument("--pairs", type=int, nargs="+", default=[401, 1000, 2000], choices=PLATES)
     parser.add_argument("--repetitions", type=int, default=2)
     parser.add_argument("--program", default=ROOT / "target/release/examples/measure")
+    parser.add_argument("--bricks", type=int, nargs=3, metavar=("NX", "NY", "NZ"))
     arguments = parser.parse_args()
+    if arguments.bricks:
+        return measure_bricks(arguments)
     print("| m | unknowns | stickslip, assembly to R | peak MB | MUMPS Schur | PARDISO factor | LAPACK potrf | syevd, values |")
     print("|" + " --- |" * 8)
     for pairs in arguments.pairs:

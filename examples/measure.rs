@@ -9,6 +9,8 @@
 //!                                                         plate is held by springs, so that answers may be proved unique
 //! measure condense NX NY WIDTH HEIGHT CASES [plain]       two plates; `plain`: also faer's own factorization
 //! measure schur NX NY WIDTH HEIGHT FOLDER                 exports K_m and C of the same to FOLDER, and condenses it
+//! measure space NX NY NZ FACETS [FOLDER]                  a block of bricks on a plane: condensed (K_m and C to FOLDER),
+//!                                                         solved on the polygon and on Coulomb's cone
 //! measure given PAIRS                                     the check of a matrix of a file beside a Cholesky factorization
 //! measure exact PAIRS F                                   the exact check of an answer
 //! ```
@@ -28,7 +30,7 @@ use faer::Side;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use serde_json::{Value, json};
 
-use common::{Plates, Pull, Ready};
+use common::{Plates, Pull, Ready, brick_block};
 use stickslip::answer::same::same_answer;
 use stickslip::contact::full_lcp::full_lcp;
 use stickslip::contact::lcp::contact_lcp;
@@ -37,9 +39,10 @@ use stickslip::fem::MainSystem;
 use stickslip::lcp::basis_solution::vertex;
 use stickslip::lcp::driver::run;
 use stickslip::lcp::lemke::SchemeEngine;
-use stickslip::model::pair::joints;
+use stickslip::model::pair::{Joint, joints};
 use stickslip::model::rules::TieBreak;
-use stickslip::model::scenario::Source;
+use stickslip::model::scenario::{Scenario, Source};
+use stickslip::model::structure::Structure;
 use stickslip::path::grid::{Axis, Grid, Shard};
 use stickslip::path::load::{self, LoadReach};
 use stickslip::path::sweep::{Following, Format, Sweep};
@@ -304,20 +307,9 @@ fn spent<T>(work: impl FnOnce() -> T) -> (Value, T) {
     (json!({ "seconds": seconds, "processor": processor }), result)
 }
 
-/// Two plates for a Schur complement: K_m (lower triangle) and C as terms `row column value` from 1 on.
-fn schur(arguments: &[String]) -> Result<Value, Failure> {
-    let scenario = Plates {
-        divisions: [number(arguments, 0, "NX")?, number(arguments, 1, "NY")?],
-        size: [number(arguments, 2, "WIDTH")?, number(arguments, 3, "HEIGHT")?],
-        ..Plates::with_pairs(2, 0.4)
-    }
-    .scenario();
-    let folder = Path::new(arguments.get(4).ok_or("FOLDER is missing")?);
-    let Source::Structure(structure) = &scenario.source else {
-        return Err("no structure".into());
-    };
-    let joints = joints(&structure.pairs);
-    let (k_m, c) = MainSystem::matrices_of(structure, &joints, &Quiet)?;
+/// K_m (lower triangle) and C as terms `row column value` from 1 on.
+fn export_matrices(structure: &Structure, joints: &[Joint], folder: &Path) -> Result<(), Failure> {
+    let (k_m, c) = MainSystem::matrices_of(structure, joints, &Quiet)?;
     let mut out = BufWriter::new(File::create(folder.join("K.txt"))?);
     for column in 0..k_m.order() {
         for (row, value) in k_m.column(column) {
@@ -330,13 +322,62 @@ fn schur(arguments: &[String]) -> Result<Value, Failure> {
         writeln!(out, "{} {} {value:e}", row + 1, joint + 1)?;
     }
     out.flush()?;
+    Ok(())
+}
+
+/// Two plates for a Schur complement.
+fn schur(arguments: &[String]) -> Result<Value, Failure> {
+    let scenario = Plates {
+        divisions: [number(arguments, 0, "NX")?, number(arguments, 1, "NY")?],
+        size: [number(arguments, 2, "WIDTH")?, number(arguments, 3, "HEIGHT")?],
+        ..Plates::with_pairs(2, 0.4)
+    }
+    .scenario();
+    let folder = Path::new(arguments.get(4).ok_or("FOLDER is missing")?);
+    let Source::Structure(structure) = &scenario.source else {
+        return Err("no structure".into());
+    };
+    let joints = joints(&structure.pairs);
+    export_matrices(structure, &joints, folder)?;
     let (whole, main) = spent(|| MainSystem::new(structure, &joints, &Quiet));
     let main = main?;
     let seconds = main.timings();
     Ok(json!({
-        "unknowns": k_m.order(), "pairs": structure.pairs.len(), "whole": whole,
+        "unknowns": main.size().all, "pairs": structure.pairs.len(), "whole": whole,
         "assemble": seconds.assemble, "factor": seconds.factor, "condense": seconds.condense,
         "entries": main.factor_entries(), "peak_megabytes": peak_megabytes(),
+    }))
+}
+
+/// A block of bricks on a rough plane: its condensation, Lemke's algorithm on the polygon, the way to Coulomb's cone.
+fn space(arguments: &[String]) -> Result<Value, Failure> {
+    let divisions = [number(arguments, 0, "NX")?, number(arguments, 1, "NY")?, number(arguments, 2, "NZ")?];
+    let facets = number(arguments, 3, "FACETS")?;
+    let scenario = brick_block(divisions, facets, "true");
+    let Source::Structure(structure) = &scenario.source else {
+        return Err("no structure".into());
+    };
+    let joints = joints(&structure.pairs);
+    if let Some(folder) = arguments.get(4) {
+        export_matrices(structure, &joints, Path::new(folder))?;
+    }
+    let (condensed, main) = spent(|| MainSystem::new(structure, &joints, &Quiet));
+    let main = main?;
+    let (seconds, size, entries) = (main.timings(), main.size().all, main.factor_entries());
+    let after_condensation = peak_megabytes();
+    drop(main);
+    let prepared = prepare(&scenario, &Quiet)?;
+    let values = scenario.parameter_values();
+    let on = |scenario: &Scenario| spent(|| prepared.case(scenario, &values).under(scenario.rules).solve());
+    let (polygon, solved) = on(&brick_block(divisions, facets, "false"));
+    let (lemke, pivots) = solved.map(|solved| (solved.answer.timings.lemke, solved.answer.pivot_count))?;
+    let (cone, solved) = on(&scenario);
+    let steps = solved?.answer.polygon.and_then(|polygon| polygon.newton);
+    Ok(json!({
+        "unknowns": size, "pairs": structure.pairs.len(), "facets": facets, "condensed": condensed,
+        "assemble": seconds.assemble, "factor": seconds.factor, "condense": seconds.condense, "entries": entries,
+        "condensed_megabytes": after_condensation, "pivots": pivots, "lemke": lemke,
+        "polygon": polygon, "cone": cone, "steps": steps, "peak_megabytes": peak_megabytes(),
     }))
 }
 
@@ -441,10 +482,11 @@ fn main() -> ExitCode {
         Some("sweep") => sweep(rest).map(|result| println!("{result}")),
         Some("condense") => condense(rest).map(|result| println!("{result}")),
         Some("schur") => schur(rest).map(|result| println!("{result}")),
+        Some("space") => space(rest).map(|result| println!("{result}")),
         Some("given") => given(rest).map(|result| println!("{result}")),
         Some("exact") => exact(rest).map(|result| println!("{result}")),
         _ => {
-            let known = "engine, warm, resolve, trace, sweep, condense, schur, given or exact";
+            let known = "engine, warm, resolve, trace, sweep, condense, schur, space, given or exact";
             Err(format!("expected {known}; see the head of examples/measure.rs").into())
         }
     };

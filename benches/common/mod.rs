@@ -113,6 +113,21 @@ impl Plates {
     }
 }
 
+/// A block of nx × ny × nz bricks, 3 × 3 × 1, on a rough plane: pushed on one side by two thirds of what it can bear.
+#[allow(dead_code)] // as above
+pub fn brick_block([nx, ny, nz]: [usize; 3], facets: usize, cone: &str) -> Scenario {
+    let text = format!(
+        r#"{{"format":"stickslip/1","dimension":3,"title":"Block of bricks",
+"materials":{{"concrete":{{"E":3e7,"nu":0.2,"density":25}}}},
+"bricks":[{{"id":"block","origin":[0,0,0],"size":[3,3,1],"divisions":[{nx},{ny},{nz}],"material":"concrete"}}],
+"contacts":[{{"id":"base","face":"block.bottom","against":"ground","friction":0.5}}],
+"loads":{{"weight":{{"items":[{{"gravity":{{"acceleration":[0,0,-1]}}}}]}},
+"push":{{"items":[{{"traction":{{"face":"block.right","value":[24,7,0]}}}}]}}}},
+"solver":{{"facets":{facets},"cone":{cone}}}}}"#
+    );
+    load_text("block", &text, None).expect("the generated scenario is sound")
+}
+
 /// A scenario with all that depends on its geometry alone.
 pub struct Ready {
     /// The scenario.
