@@ -76,7 +76,9 @@ fn embedded_structures_in_space_balance() {
         let middles = ranges.iter().map(|(name, min, max)| vec![(name.as_str(), min + 0.4 * (max - min))]);
         for set in std::iter::once(Vec::new()).chain(middles) {
             let mut values = case.scenario.parameter_values();
-            values.extend(set.iter().map(|(name, value)| ((*name).to_owned(), *value)));
+            for (name, value) in &set {
+                values.insert((*name).to_owned(), *value);
+            }
             let case = case.at(&values);
             let answer = case.solve_under(&set, case.scenario.rules);
             if !answer.is_answer() {
