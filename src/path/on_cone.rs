@@ -254,12 +254,13 @@ impl Path<'_> {
                 here = next;
                 path.places.push(self.place(&here));
             } else {
+                let size = next.step.z.amax().max(here.step.z.amax());
                 let [before, after] = self.narrowed(&stepper, here, next)?;
                 if path.places.last().is_some_and(|last| last.value != before.value) {
                     path.places.push(self.place(&before));
                 }
                 let moved = (&after.step.z - &before.step.z).amax();
-                self.change(&mut path, &before, &after, moved > JUMP * after.step.z.amax().max(before.step.z.amax()));
+                self.change(&mut path, &before, &after, moved > JUMP * size);
                 (here, slope) = (after, None);
             }
             length = match target {
