@@ -342,6 +342,32 @@ fn a_wrong_arrow_is_found_in_every_spelling() {
     }
 }
 
+/// Where the word of a law is known: its definition, the decoder, and what it resolves to.
+const KNOW_LAWS: &[&str] = &["model/pair.rs", "model/decode/", "contact/law.rs"];
+
+/// Everywhere else a pair is what its two joints can do (`PairLaw`).
+#[test]
+fn the_words_of_laws_are_asked_for_in_few_places() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    let asks = |text: &str| {
+        let code = without_tests(&code(text));
+        let words = ["Coulomb", "Frictionless", "Bound"];
+        words.iter().any(|word| code.contains(&format!("LawKind::{word}")) || code.contains(&format!("Law::{word}")))
+    };
+    assert!(asks("match law { Law::Bound { bound } => bound }") && !asks("// LawKind::Bound"));
+    let mut known = 0;
+    for file in files {
+        let path = file.strip_prefix(&root).unwrap().to_string_lossy().replace('\\', "/");
+        if asks(&fs::read_to_string(&file).unwrap()) {
+            assert!(KNOW_LAWS.iter().any(|place| path.starts_with(place)), "src/{path} asks for the word of a law");
+            known += 1;
+        }
+    }
+    assert!(known >= 3, "the sources were not found");
+}
+
 #[test]
 fn a_print_is_found_outside_the_faces() {
     let judge = |path: &str, text: &str| complaints(Path::new(path), text).len();

@@ -9,6 +9,7 @@ use super::law::PairLaw;
 use super::polygon::Polygon;
 use super::system::ContactSystem;
 use crate::lcp::exact::scalar::Scalar;
+use crate::lcp::problem::NOISE;
 use crate::model::rules::{FACETS, Rules};
 
 /// λ = R (z − (g, 0)) + load over the joints, and what the laws demand of λ and z. The system is shared: what changes when
@@ -102,6 +103,19 @@ impl ContactProblem {
         self.file_load = None;
         self.load_terms = load.abs();
         self.load = load;
+    }
+
+    /// The same with zeros in place of what a condensation leaves of them in the load.
+    #[must_use]
+    pub fn without_load_noise(mut self) -> ContactProblem {
+        if self.system.rounded {
+            self.load.zip_apply(&self.load_terms, |entry: &mut f64, terms: f64| {
+                if entry.abs() <= NOISE * terms {
+                    *entry = 0.0;
+                }
+            });
+        }
+        self
     }
 
     /// Gap of every pair, that is of the joints from the first on.

@@ -138,6 +138,11 @@ impl ContactSystem {
         self.force_form.is_some() || self.yielding.is_some()
     }
 
+    /// R with zeros in place of what the condensation leaves of them: it says nothing and would make all fractions long.
+    pub fn stiffness_without_noise(&self) -> DMatrix<f64> {
+        self.stiffness.map_with_location(|i, j, entry| if entry.abs() > self.entry_noise(i, j) { entry } else { 0.0 })
+    }
+
     /// Whether the force of a joint is the unknown.
     pub fn is_forced(&self, joint: usize) -> bool {
         self.force_form.as_ref().is_some_and(|form| form.joints[joint])

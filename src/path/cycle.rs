@@ -3,6 +3,7 @@
 //! The history is followed by the rate problem ([`super::stages`]). The rates depend on the forces and on the gaps that are
 //! open, not on the slips committed before: where both come back after a cycle, every further cycle is the same.
 
+use super::exact_cycle::{self, Repetition};
 use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until};
 use super::start::PathError;
 use super::static_shakedown::{Static, static_limit, static_shakedown};
@@ -104,6 +105,8 @@ pub struct Cycle {
     pub history: History,
     /// The proof, or what is missing, in a sentence.
     pub sentence: String,
+    /// What is proved of its repetition, in rationals.
+    pub repetition: Repetition,
     /// What the static theorem says of every start.
     pub every_start: Static,
 }
@@ -216,7 +219,29 @@ pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize, begin: &Be
         }
         _ => Static::NotAsked,
     };
-    Ok(Cycle { every_start, ..found })
+    let repetition = repetition(case, &found)?;
+    Ok(Cycle { every_start, repetition, ..found })
+}
+
+/// What can be proved in rationals of the cycle that repeats.
+fn repetition(case: Case<'_>, found: &Cycle) -> Result<Repetition, PathError> {
+    let stages = &found.history.stages;
+    let last = 2 * found.turns.len();
+    let (Kind::ShakesDown | Kind::Alternates | Kind::Ratchets, Some([before, there, back])) =
+        (found.kind, stages.get(last.wrapping_sub(2)..=last))
+    else {
+        return Ok(Repetition::NotAsked);
+    };
+    let system = case.prepared.system().ok_or(PathError::Plain("cycle"))?;
+    if system.is_in_space() {
+        let why = "on Coulomb's cone nothing is linear between two events";
+        return Ok(Repetition::Unproved(why.to_owned()));
+    }
+    let at = |end: f64| -> Result<ContactProblem, PathError> {
+        Ok(contact_problem(system, &target(case, &found.name, end)?, case.values).without_load_noise())
+    };
+    let problems = [at(found.ends[0])?, at(found.ends[1])?];
+    Ok(exact_cycle::prove(&problems, before, [there, back], case.watch))
 }
 
 /// As [`cycle`], without asking the static theorem.
@@ -252,7 +277,16 @@ pub(super) fn followed(
     let history = follow_until(case, begin, &targets, &mut decided)?;
     let (kind, turns) = judged(&history.stages, history.end == HistoryEnd::Complete, (softest, same));
     let sentence = said(kind, &turns, &history, same);
-    Ok(Cycle { name: name.to_owned(), ends, kind, turns, history, sentence, every_start: Static::NotAsked })
+    Ok(Cycle {
+        name: name.to_owned(),
+        ends,
+        kind,
+        turns,
+        history,
+        sentence,
+        repetition: Repetition::NotAsked,
+        every_start: Static::NotAsked,
+    })
 }
 
 /// The largest displacement of a tangential joint under a unit force, the others held.

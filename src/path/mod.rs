@@ -8,6 +8,7 @@ pub mod cycle_starts;
 pub mod edge;
 pub mod end;
 pub mod envelope;
+pub mod exact_cycle;
 pub mod find;
 pub mod friction;
 mod friction_zero;

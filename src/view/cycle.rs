@@ -9,6 +9,7 @@ use super::table::{Cell, Column, Row, Table};
 use crate::model::units::Units;
 use crate::path::cycle::{Cycle, Kind, ShakedownLimit, Turn};
 use crate::path::cycle_starts::Starts;
+use crate::path::exact_cycle::{MOST_PAIRS as MOST_PROVED_PAIRS, MOST_SCHEMES, Repetition, SlipMap};
 use crate::path::static_shakedown::{MOST_PAIRS, Static};
 use crate::text::number::{measured, short, with_unit};
 
@@ -49,7 +50,7 @@ pub fn write(out: &mut dyn Write, cycle: &Cycle, unit: Option<&str>, units: &Uni
     }
     style.paragraph(out, role(cycle.kind), &line)?;
     style.paragraph(out, Role::Plain, &cycle.sentence)?;
-    if let Some(text) = every_start(&cycle.every_start) {
+    for text in [repetition(&cycle.repetition), every_start(&cycle.every_start)].into_iter().flatten() {
         style.paragraph(out, Role::Muted, &text)?;
     }
     if cycle.turns.is_empty() {
@@ -108,6 +109,37 @@ fn pairs(out: &mut dyn Write, cycle: &Cycle, units: &Units, style: &Style) -> io
     }
     writeln!(out, "{}", style.paint(Role::Title, &format!("Cycle {}", cycle.turns.len())))?;
     table.write(out, style)
+}
+
+/// What is proved in rationals of the repetition; `None` where there was nothing to prove.
+pub fn repetition(found: &Repetition) -> Option<String> {
+    let proved = match found {
+        Repetition::NotAsked => return None,
+        Repetition::TooLarge { pairs, schemes } => {
+            return Some(format!(
+                "no proof in rationals was tried: {pairs} pairs and {schemes} working schemes are too many, {MOST_PROVED_PAIRS} \
+                 pairs and {MOST_SCHEMES} schemes are not"
+            ));
+        }
+        Repetition::Unproved(why) => {
+            return Some(format!("found to the digits of f64, not proved in rationals: {why}"));
+        }
+        Repetition::Proved(found) => found,
+    };
+    let map = match proved.map {
+        SlipMap::Identical => "; with these schemes a cycle returns every slip as it was".to_owned(),
+        SlipMap::Contracting { share, cycles } => {
+            let shrink = if cycles == 1 { "a cycle shrinks".to_owned() } else { format!("{cycles} cycles shrink") };
+            format!("; with these schemes {shrink} differences of slips to at most {} of them", short(share))
+        }
+        SlipMap::Open => String::new(),
+    };
+    Some(format!(
+        "proved in rationals, for R and RF as they are stored: a cycle of {} of its working schemes whose contact forces are within \
+         {:.0e} of the one followed keeps all the laws at every moment and ends with the forces and gaps with which it began, so \
+         that it can repeat for ever{map}",
+        proved.schemes, proved.distance
+    ))
 }
 
 /// What the static theorem says of every start; `None` where it was not asked.

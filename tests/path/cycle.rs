@@ -117,6 +117,7 @@ fn the_tail_of_a_convergence_is_no_ratchet() {
     near(&last["pairs"][0]["there"], -last["pairs"][0]["back"].as_f64().unwrap(), 1e-12);
     near(&last["pairs"][0]["there"].as_f64().unwrap().abs().into(), 0.1875, 1e-9);
     // The sentence tells how near it has come, and that the next cycle was the same.
+    assert_eq!((&found["proof"]["proved"], &found["proof"]["map"]), (&true.into(), &"contracting".into()), "{found}");
     let sentence = found["sentence"].as_str().unwrap();
     assert!(sentence.contains("every further cycle is the same") && last["repeated"] == true, "{found}");
 }
@@ -298,4 +299,31 @@ fn a_pair_that_moves_while_it_is_open_shakes_down() {
         near(&last["pairs"][0][key], expected, 1e-14);
     }
     assert!(lost(last).abs() < 1e-15, "{last}");
+}
+
+/// In rationals: the beam goes to and fro, the strip ratchets by -2 s (0.05 − 8.8 / EA) however its slips begin, the sliders
+/// contract, two nodes keep what they have slipped; on a limit of its own nothing is claimed.
+#[test]
+fn what_repeats_is_proved_in_rationals() {
+    let mut beam = beam();
+    for command in ["set f 0.3", "set F 100"] {
+        report(&mut beam, command).unwrap();
+    }
+    for pull in ["50", "60.0001", "61", "75", "150"] {
+        let found = report(&mut beam, &format!("cycle F2 0..{pull}")).unwrap();
+        let proof = &found["proof"];
+        assert_eq!(proof["proved"], true, "{pull}: {proof}");
+        assert!(number(&proof["net"]) < 1e-25 && number(&proof["distance"]) < 1e-12, "{pull}: {proof}");
+    }
+    let shown = text(&mut beam, "cycle F2 0..61");
+    assert!(shown.contains("proved in rationals, for R and RF as they are stored"), "{shown}");
+    let mut strip = session(embedded::load("ratchet").expect("embedded"));
+    let found = report(&mut strip, "cycle heat 0..50").unwrap();
+    assert_eq!(found["proof"]["proved"], true, "{}", found["proof"]);
+    near(&found["proof"]["net"], 0.0824, 1e-14);
+    let mut nodes = two_nodes();
+    for push in ["0.6", "0.8", "0.95", "1.2"] {
+        let proof = &report(&mut nodes, &format!("cycle L 0..{push}")).unwrap()["proof"];
+        assert_eq!((&proof["proved"], &proof["map"]), (&true.into(), &"identical".into()), "{push}: {proof}");
+    }
 }

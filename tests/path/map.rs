@@ -1,12 +1,19 @@
 //! `map`: regions and their areas, against closed forms.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use serde_json::Value;
+use stickslip::model::embedded;
 use stickslip::model::load::load_text;
+use stickslip::path::envelope::Axis;
+use stickslip::path::map::{LeftOut, map};
+use stickslip::path::start::PathError;
+use stickslip::solve::prepare;
 
 use super::find::{beam, near, number, report, session, text};
 use stickslip::session::Output;
 use stickslip::view::style::Style;
-use stickslip::watch::Quiet;
+use stickslip::watch::{Quiet, Watch};
 
 fn region<'a>(map: &'a Value, states: &[(&str, &str)]) -> &'a Value {
     let found = map["regions"]
@@ -159,4 +166,41 @@ fn a_map_tells_the_values_it_was_drawn_under() {
 fn a_map_of_too_many_axes_is_refused_by_its_own_name() {
     let refusal = report(&mut beam(), "map f 0..1 F 0..1 F2 0..1 weight 0..1").unwrap_err();
     assert!(refusal.starts_with("map: expected two"), "{refusal}");
+}
+
+/// Ctrl-C after 40 lines of some hundreds: what they show is drawn, with areas that fill the plane, and no answer is looked
+/// for any more. Before the first lines there is nothing to draw.
+#[test]
+fn a_stopped_map_draws_what_it_has() {
+    struct Impatient(AtomicUsize);
+    impl Watch for Impatient {
+        fn progress(&self, what: &str, _: f64) {
+            if !what.starts_with("f = ") {
+                return;
+            }
+            let _ = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));
+        }
+        fn stop(&self) -> bool {
+            self.0.load(Ordering::Relaxed) == 0
+        }
+    }
+    let axis = |name: &str, range| Axis { name: name.to_owned(), range };
+    let scenario = embedded::load("beam").expect("embedded");
+    let values = scenario.parameter_values();
+    let prepared = prepare(&scenario, &Quiet).expect("sound");
+    let stopped = |lines: usize| {
+        let watch = Impatient(AtomicUsize::new(lines));
+        map(prepared.case(&scenario, &values).watched(&watch), [axis("f", [0.0, 1.0]), axis("F2", [0.0, 400.0])], None)
+    };
+    assert_eq!(stopped(10), Err(PathError::Interrupted));
+    let found = stopped(40).expect("a map");
+    let (why, lines) = found.left_out.expect("left out");
+    assert!(why == LeftOut::Stopped && (17..=40).contains(&lines), "{why:?} {lines}");
+    let areas: f64 = found.regions.iter().map(|region| region.area).sum();
+    assert!((areas - 400.0).abs() < 1e-9, "{areas}");
+    // Strips of 1/16 at most lie between lines: no bound of a region is farther from its place than that.
+    let collapse: f64 = found.regions.iter().filter(|region| region.states.is_none()).map(|region| region.area).sum();
+    assert!((collapse - 400.0 / 3.0).abs() < 400.0 / 16.0, "{collapse}");
+    assert!(found.regions.iter().all(|region| region.answers.is_none() && region.verdict.is_none()));
+    assert!(found.notes[0].starts_with("stopped before its end"), "{:?}", found.notes);
 }

@@ -15,6 +15,7 @@ mod foundation;
 mod foundations;
 mod frame;
 mod greco;
+mod guides;
 mod klarbring;
 mod loads;
 mod meshes;

@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use stickslip::answer::record::Verdict;
 use stickslip::path::stages::{Begin, History, HistoryEnd, follow_factors};
 
-use super::repeated_joints::{EA, EI, L, corner, guide};
+use super::guides::{EA, EI, L, guide};
+use super::repeated_joints::corner;
 use crate::common::*;
 
 fn history(case: &Case, stages: &[[f64; 2]]) -> History {

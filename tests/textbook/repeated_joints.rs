@@ -1,129 +1,22 @@
-//! Joints that repeat one another: guides with two opposed pairs at one node, corners where blocks meet.
+//! Joints that repeat one another where blocks meet. Guides with two opposed pairs at one node: [`super::guides`].
 //!
 //! ```text
-//!     ▽ g₂                                ┌────┬────┐
-//!   ══●───────────▒   guide: k = 3EI/L³,  │ a  │ b  │   T corner: head joint a|b on two bed joints
-//!     △ g₁            k_a = EA/L          └────┴────┘
+//!   ┌────┬────┐
+//!   │ a  │ b  │   T corner: head joint a|b on two bed joints
+//!   └────┴────┘
 //! ```
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
-use stickslip::answer::record::{Answer, OutcomeKind, RayClass, State, Verdict};
+use stickslip::answer::record::{Answer, OutcomeKind};
 use stickslip::model::rules::{Covering, Rules};
-use stickslip::path::end::PathEnd;
 use stickslip::path::limit::limit;
-use stickslip::path::sensitivity::sensitivity;
-use stickslip::path::{friction, load};
 
 use crate::common::balance::{imbalance, incompatibility, nodal_imbalance};
 use crate::common::laws::violation;
 use crate::common::*;
-
-pub const EA: f64 = 500.0;
-pub const EI: f64 = 1000.0;
-pub const L: f64 = 10.0;
-
-/// A cantilever turned by some angle with a guide at its tip.
-pub fn guide(angle: f64) -> Case {
-    let (sin, cos) = angle.sin_cos();
-    let turn = |x: f64, y: f64| json!([cos * x - sin * y, sin * x + cos * y]);
-    let pair = |id: &str, n: f64, gap: &str| json!({ "id": id, "node": "B", "against": "ground", "normal": turn(0.0, n), "friction": "f", "gap": gap });
-    Case::json(json!({
-        "parameters": { "P": 1, "T": 0, "f": 0.3, "g1": 0.01, "g2": 0.02 },
-        "materials": { "m": { "E": 1, "nu": 0 } },
-        "sections": { "s": { "area": EA, "inertia": EI } },
-        "nodes": { "A": turn(0.0, 0.0), "B": turn(L, 0.0) },
-        "bars": [{ "id": "AB", "nodes": ["A", "B"], "material": "m", "section": "s" }],
-        "supports": [{ "at": "A", "fixed": ["x", "y", "r"] }],
-        "contacts": [pair("low", 1.0, "g1"), pair("up", -1.0, "g2")],
-        "loads": {
-            "press": { "factor": "P", "items": [{ "point": { "at": "B", "force": turn(0.0, -1.0) } }] },
-            "pull": { "factor": "T", "items": [{ "point": { "at": "B", "force": turn(1.0, 0.0) } }] }
-        }
-    }))
-}
-
-/// With clearances: the tip moves by P/k until a side closes; that side carries P − k g, and holds an axial force up to
-/// f times that; the rest stretches the bar.
-#[test]
-fn guide_with_clearances() {
-    let (k, k_a) = (3.0 * EI / L.powi(3), EA / L);
-    let (g1, g2, f) = (0.01, 0.02, 0.3);
-    for angle in [0.0, 0.5, 2.2, -1.1] {
-        let case = guide(angle);
-        for (p, t) in
-            [(1.0, 0.0), (1.0, 0.2), (1.0, 0.5), (1.0, -0.5), (-1.0, 0.2), (-1.0, 0.7), (0.02, 0.3), (0.0, -0.3)]
-        {
-            let answer = case.solve(&[("P", p), ("T", t)]);
-            is_answer(&answer);
-            let [low, up] = &answer.pairs[..] else { panic!() };
-            let (x_low, x_up) = (f64::max(p - k * g1, 0.0), f64::max(-p - k * g2, 0.0));
-            let down = (p / k).clamp(-g2, g1);
-            let held = f * (x_low + x_up);
-            let slip = (t.abs() - held).max(0.0) * t.signum() / k_a;
-            let what = format!("P = {p}, T = {t}, angle {angle}");
-            near(&what, low.x_n, x_low, 1e-12, 1.0);
-            near(&what, up.x_n, x_up, 1e-12, 1.0);
-            near(&what, low.z_n, g1 - down, 1e-12, g1);
-            near(&what, up.z_n, g2 + down, 1e-12, g2);
-            near(&what, low.z_t, slip, 1e-12, 0.01);
-            near(&what, up.z_t, -slip, 1e-12, 0.01);
-            // Friction against the motion: −T or −f x along t, which is opposite on the two sides.
-            let friction = t.signum() * t.abs().min(held);
-            near(&what, low.x_t - up.x_t, -friction, 1e-12, 1.0);
-        }
-    }
-}
-
-/// Without clearance the sides share what presses: x_low − x_up = P, and of least norm is (P, 0). The axial force is held up
-/// to f P; beyond, the bar stretches by (T − f P)/k_a.
-#[test]
-fn guide_without_clearance() {
-    let case = guide(0.0);
-    for (p, t) in [(1.0, 0.2), (1.0, 0.5), (-2.0, 0.5), (-2.0, -0.9), (0.0, 0.5)] {
-        let answer = case.solve(&[("P", p), ("T", t), ("g1", 0.0), ("g2", 0.0)]);
-        is_answer(&answer);
-        let [low, up] = &answer.pairs[..] else { panic!() };
-        near("x_low", low.x_n, p.max(0.0), 1e-12, 1.0);
-        near("x_up", up.x_n, (-p).max(0.0), 1e-12, 1.0);
-        near("z", low.z_n.max(up.z_n), 0.0, 1e-12, 0.01);
-        let slip = (t.abs() - 0.3 * p.abs()).max(0.0) * t.signum() / (EA / L);
-        near("slip", low.z_t, slip, 1e-12, 0.01);
-        near("slip", up.z_t, -slip, 1e-12, 0.01);
-    }
-    let note = |case: &Case, t: f64, g2: f64, f: f64| {
-        let answer = case.solve(&[("P", 1.0), ("T", t), ("g1", 0.0), ("g2", g2), ("f", f)]);
-        is_answer(&answer);
-        answer.notes.join(" ")
-    };
-    // Wedged by s the sides hold f (P + 2 s) against T: sticking or slipping, other self-stress holds more.
-    for t in [0.2, 0.5] {
-        let text = note(&case, t, 0.0, 0.3);
-        assert!(text.contains("low and up") && text.contains("least norm for the motion shown"), "{text}");
-        assert!(text.contains("another self-stress may hold another motion"), "{text}");
-    }
-    // Without friction s changes no motion; with a clearance above there is none.
-    let text = note(&case, 0.2, 0.0, 0.0);
-    assert!(text.contains("low and up") && text.contains("motion does not depend on how they share"), "{text}");
-    assert!(!text.contains("another motion"), "{text}");
-    assert_eq!(note(&case, 0.2, 0.01, 0.3), "");
-}
-
-/// Sides nearer to each other than the node is wide: no displacement opens both.
-#[test]
-fn guide_with_interference_has_no_answer() {
-    let case = guide(0.3);
-    let answer = case.solve(&[("g1", -0.03), ("g2", 0.02)]);
-    let ray = answer.ray.as_ref().expect("no answer");
-    assert_eq!((ray.class, ray.verdict), (RayClass::NoEquilibrium, Some(Verdict::Certified)));
-    assert!(ray.explanation.contains("distances of pairs low and up sum up to -0.01"), "{}", ray.explanation);
-    // With room for both it is the guide with clearances moved: the low side pushes the tip up by 0.01.
-    let answer = case.solve(&[("g1", -0.01), ("g2", 0.02)]);
-    is_answer(&answer);
-    near("x_low", answer.pairs[0].x_n, 1.0 + 3.0 * EI / L.powi(3) * 0.01, 1e-12, 1.0);
-    near("z_up", answer.pairs[1].z_n, 0.01, 1e-12, 0.01);
-}
+use crate::guides::guide;
 
 /// Two stiff blocks side by side on the ground: at the foot of their head joint three pairs meet, six joints on four
 /// relative displacements.
@@ -292,44 +185,6 @@ fn random_frames_with_repeated_joints() {
     assert!(answers >= 55, "{answers} answers");
 }
 
-#[test]
-fn states_of_a_guide() {
-    let answer = guide(0.0).solve(&[("P", 1.0)]);
-    assert_eq!(states(&answer), [State::Stick, State::Open]);
-}
-
-/// A guide with clearances along its loads and its friction: P from 1 to −1 opens the low side at k g₁ and closes the upper
-/// one at −k g₂; T = 0.5 slips on the low side for f < T/(P − k g₁); with P = 1 the tip stretches by (T − f (P − k g₁))/k_a.
-#[test]
-fn paths_and_sensitivities_of_a_guide() {
-    let (k, k_a, f) = (3.0 * EI / L.powi(3), EA / L, 0.3);
-    let case = guide(0.4);
-    let mut values = case.scenario.parameter_values();
-    values.insert("T".to_owned(), 0.5).expect("a parameter");
-    let solved = case.solved(&[("T", 0.5)], case.scenario.rules);
-    let (prepared, scenario) = (&case.prepared, &case.scenario);
-    let reach = load::LoadReach { to: Some(-1.0), through: false };
-    let path = load::trace(prepared.case(scenario, &values), Some(&solved), "P", reach).expect("a path");
-    assert_eq!(path.end, PathEnd::Target);
-    let at: Vec<f64> = path.breakpoints.iter().map(|breakpoint| breakpoint.value).collect();
-    near_all("breakpoints", &at, &[k * 0.01, -k * 0.02], 1e-12);
-    let path = friction::trace(prepared.case(scenario, &values), Some(&solved), "f", 1.0).expect("a path");
-    let at: Vec<f64> = path.breakpoints.iter().map(|breakpoint| breakpoint.value).collect();
-    near_all("breakpoints", &at, &[0.5 / (1.0 - k * 0.01)], 1e-11);
-    let found = sensitivity(prepared.case(scenario, &values), &solved).expect("rates");
-    let of = |name: &str| &found.parameters.iter().find(|rate| rate.parameter == name).expect("a parameter").pairs[0];
-    let pressed = 1.0 - k * 0.01;
-    near("dz_t/df", of("f").z_t, -pressed / k_a, 1e-12, 0.01);
-    near("dx_t/df", of("f").x_t, -pressed, 1e-12, 1.0);
-    near("dz_t/dP", of("P").z_t, -f / k_a, 1e-12, 0.01);
-    near("dx_n/dP", of("P").x_n, 1.0, 1e-12, 1.0);
-    near("dx_n/dg1", of("g1").x_n, -k, 1e-12, k);
-    near("dz_t/dg1", of("g1").z_t, f * k / k_a, 1e-12, 0.01);
-    near("dz_t/dT", of("T").z_t, 1.0 / k_a, 1e-12, 0.01);
-    let up = &found.parameters.iter().find(|rate| rate.parameter == "g2").expect("a parameter").pairs[1];
-    near("dz_n/dg2", up.z_n, 1.0, 1e-12, 1.0);
-}
-
 /// A rigid sledge on two runners, pushed along the ground: one tangential joint repeats the other. What the run ends with is
 /// told as what it is: p as much more pressing force and cohesion in both pairs would hold where
 /// f (W + 2 p) + 2 p = H, and that is another p.
@@ -493,28 +348,5 @@ fn the_written_lcp_holds_at_the_answer() {
             let found: f64 = row.iter().zip(&z).map(|(m, z)| m * z).sum::<f64>() + lcp.q[i];
             near(&names[i], found, w[i], 1e-11, terms + lcp.q[i].abs() + w[i].abs());
         }
-    }
-}
-
-/// Two pairs held both ways at one node, friction bounds 0.1 and 0.05: the tip is held along n, and along the bar up to the
-/// sum of the bounds.
-#[test]
-fn bounds_of_a_clamp_add_up() {
-    let mut value: Value = serde_json::from_str(&guide(0.0).scenario.text).expect("json");
-    for (i, bound) in [0.1, 0.05].into_iter().enumerate() {
-        let pair = value["contacts"][i].as_object_mut().expect("a pair");
-        pair.remove("friction");
-        pair.remove("gap");
-        pair.insert("law".into(), "bound".into());
-        pair.insert("bound".into(), bound.into());
-    }
-    let case = Case::json(value);
-    for t in [0.12, 0.5, -0.5_f64] {
-        let answer = case.solve(&[("T", t)]);
-        is_answer(&answer);
-        let [low, up] = &answer.pairs[..] else { panic!() };
-        near("pressed", low.x_n - up.x_n, 1.0, 1e-12, 1.0);
-        near("friction", low.x_t - up.x_t, -t.signum() * t.abs().min(0.15), 1e-12, 1.0);
-        near("slip", low.z_t, t.signum() * (t.abs() - 0.15).max(0.0) / (EA / L), 1e-12, 0.01);
     }
 }

@@ -51,8 +51,17 @@ pub(crate) struct TangentialVariables {
 
 impl<'a> ExactSystem<'a> {
     pub fn new(problem: &'a ContactProblem) -> Self {
+        Self::with(problem, &problem.system.stiffness)
+    }
+
+    /// With zeros in place of their rounding in R, as proofs are exported.
+    pub fn without_noise(problem: &'a ContactProblem) -> Self {
+        Self::with(problem, &problem.system.stiffness_without_noise())
+    }
+
+    fn with(problem: &'a ContactProblem, stiffness: &DMatrix<f64>) -> Self {
         let system = &*problem.system;
-        let (stored, mut constants) = stored(problem);
+        let (stored, mut constants) = stored(problem, stiffness);
         let stiffness = with_exact_kernel(system, stored);
         for (k, gap) in problem.gaps().enumerate().filter(|(_, gap)| *gap != 0.0) {
             let gap = rational(gap);
@@ -195,9 +204,9 @@ impl PairVariables {
 
 /// R and RF as they are stored; of a file with frictionless pairs from its own entries, the released tangential joints
 /// condensed out exactly.
-fn stored(problem: &ContactProblem) -> (Vec<Vec<BigRational>>, Vec<BigRational>) {
+fn stored(problem: &ContactProblem, stiffness: &DMatrix<f64>) -> (Vec<Vec<BigRational>>, Vec<BigRational>) {
     let system = &*problem.system;
-    let own = || (rational_rows(&system.stiffness), problem.load.iter().map(|entry| rational(*entry)).collect());
+    let own = || (rational_rows(stiffness), problem.load.iter().map(|entry| rational(*entry)).collect());
     let (Some(file), Some(load)) = (&system.file, &problem.file_load) else { return own() };
     if file.compliance {
         return own();

@@ -48,13 +48,15 @@ pub fn eliminate<T: Real>(k: &mut Stiffness<T>, rows: Range<usize>) {
     }
 }
 
-/// Extends the displacements of the nodes by the amounts of the modes, up to `count` rows, from the rows that
+/// The displacements of the nodes, then the amounts of the modes, up to `count` rows, from the rows of k that
 /// [`eliminate`] left.
-pub fn complete(k: &Stiffness, u: &mut Vec<f64>, count: usize) {
+pub fn completed(k: &Stiffness, nodes: &[f64], count: usize) -> Vec<f64> {
+    let mut u = nodes.to_vec();
     for row in u.len()..count {
         let forced: f64 = u.iter().enumerate().map(|(j, u)| k[(row, j)] * u).sum();
         u.push(-forced / k[(row, row)]);
     }
+    u
 }
 
 #[cfg(test)]

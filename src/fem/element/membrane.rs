@@ -11,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::incompatible;
 use super::jacobian::{determinant, in_plane};
-use super::{Acting, FiniteElement, Stiffness, Stress, free_strain};
+use super::{Acting, FiniteElement, Stiffness, Stress, free_strain, weighted};
 use crate::doubled::{Doubled, Real};
 use crate::model::shape_functions::{AreaShape, MOST};
 use crate::model::structure::{ElementLoad, Material, Plane};
@@ -132,25 +132,15 @@ impl Membrane<'_> {
 
     /// The displacements `u` of its nodes, then the amounts of the incompatible modes.
     fn with_modes(&self, u: &[f64]) -> Vec<f64> {
-        let mut u = u.to_vec();
-        if self.incompatible
-            && let Some(k) = self.stiffness_of_all::<f64>()
-        {
-            incompatible::complete(&k, &mut u, 2 * self.functions());
-        }
-        u
+        let k = self.incompatible.then(|| self.stiffness_of_all::<f64>()).flatten();
+        k.map_or_else(|| u.to_vec(), |k| incompatible::completed(&k, u, 2 * self.functions()))
     }
 
     /// Stress at (ξ, η) for the displacements `u`, [modes](Self::with_modes) included, and the free expansion
     /// `strain` = α ΔT: extrapolated from the points where the element's stresses are best.
     fn stress_at(&self, at: [f64; 2], u: &[f64], strain: f64) -> Stress {
-        let mut sum = Stress::default();
-        for (point, weight) in self.shape().stress_points().into_iter().zip(self.shape().extrapolation(at)) {
-            for (sum, value) in sum.iter_mut().zip(self.stress_at_point(point, u, strain)) {
-                *sum += weight * value;
-            }
-        }
-        sum
+        let (points, weights) = (self.shape().stress_points(), self.shape().extrapolation(at));
+        weighted(&weights, points.into_iter().map(|point| self.stress_at_point(point, u, strain)))
     }
 
     /// D (B u − ε₀) at (ξ, η), with σ_zz.

@@ -38,6 +38,15 @@ pub type Acting<'a> = [(f64, &'a ElementLoad)];
 /// σ_xx, σ_yy, σ_xy, σ_zz, σ_yz and σ_zx, tension positive; the last two are 0 in the plane.
 pub type Stress = [f64; 6];
 
+/// Σ weight × stress.
+fn weighted(weights: &[f64], stresses: impl Iterator<Item = Stress>) -> Stress {
+    let mut sum = Stress::default();
+    for (weight, stress) in weights.iter().zip(stresses) {
+        sum.iter_mut().zip(stress).for_each(|(sum, value)| *sum += weight * value);
+    }
+    sum
+}
+
 /// What an element does with displacements and loads. Vectors and matrices have rows as in [`slots`].
 pub trait FiniteElement {
     /// Stiffness in global axes.

@@ -11,7 +11,7 @@ mod panel;
 use serde::Serialize;
 
 pub use line::{Lines, Part, Scheme};
-pub use panel::Panel;
+pub use panel::{LeftOut, Panel};
 
 use self::panel::Cutter;
 use super::envelope::Axis;
@@ -78,6 +78,9 @@ pub struct Map {
     pub along: usize,
     /// Whether every bound lies on an exact path.
     pub exact: bool,
+    /// Whether all places where the order of the schemes changes were found; otherwise why not, and the number of lines by
+    /// which it is drawn.
+    pub left_out: Option<(LeftOut, usize)>,
     /// What limits it, in sentences.
     pub notes: Vec<String>,
 }
@@ -114,7 +117,7 @@ impl Map {
 /// The map of two parameters (or factors of load cases); `quantity` is read at a place of every region.
 ///
 /// # Errors
-/// Axes that cannot be varied, an interruption; see [`PathError`].
+/// Axes that cannot be varied, an interruption before there is anything to show; see [`PathError`].
 pub fn map(case: Case<'_>, axes: [Axis; 2], quantity: Option<&Quantity>) -> Result<Map, PathError> {
     plane_system(case.prepared, "map", "`sweep P A..B N Q C..D N` gives the answers on a grid of both")?;
     let along = along(case, &axes)?;
@@ -122,9 +125,9 @@ pub fn map(case: Case<'_>, axes: [Axis; 2], quantity: Option<&Quantity>) -> Resu
     let lines = Lines { case, along: &axes[along].name, range: axes[along].range, across: &across.name };
     let mut cutter = Cutter::new(&lines, across.range);
     let panels = cutter.panels()?;
-    let exact = cutter.exact;
+    let (exact, left_out) = (cutter.exact, cutter.left_out);
     let region_of = connected(&panels, axes[along].range);
-    let mut map = Map { axes, regions: Vec::new(), panels, region_of, along, exact, notes: Vec::new() };
+    let mut map = Map { axes, regions: Vec::new(), panels, region_of, along, exact, left_out, notes: Vec::new() };
     map.describe(case, quantity)?;
     map.say(case);
     Ok(map)
@@ -229,7 +232,9 @@ impl Map {
                 answers: None,
                 value: None,
             };
-            self.look(case, &mut found, enumerated, quantity)?;
+            if self.left_out.is_none_or(|(why, _)| why != LeftOut::Stopped) {
+                self.look(case, &mut found, enumerated, quantity)?;
+            }
             self.regions.push(found);
         }
         Ok(())
@@ -270,6 +275,17 @@ impl Map {
     /// What the map does not show.
     fn say(&mut self, case: Case<'_>) {
         let pairs = case.prepared.system().map_or(0, |system| system.pairs.len());
+        if let Some((why, lines)) = self.left_out {
+            let [why, look] = match why {
+                LeftOut::Stopped => ["stopped before its end", "; its regions were not looked at one by one"],
+                LeftOut::Intricate => ["too intricate to be cut exactly (smaller ranges may be)", ""],
+            };
+            self.notes.push(format!(
+                "{why}: drawn by the {lines} lines along {} that were looked at; between them bounds and areas are \
+                 approximate, and small regions may be missing{look}",
+                self.axes[self.along].name
+            ));
+        }
         if !self.exact {
             self.notes.push(format!(
                 "no exact path leads over {}: its lines are answers of their own, each change between two of them \

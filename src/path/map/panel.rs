@@ -68,12 +68,6 @@ impl Panel {
     }
 }
 
-fn too_intricate() -> PathError {
-    PathError::Target(format!(
-        "the map is too intricate: after {LINES} lines across it its regions are not told apart; take smaller ranges"
-    ))
-}
-
 /// Where the sequence of schemes is thought to change between `found` and the lines `ahead`: where a part of the lines on
 /// one side would get no length. Not quite there, but on the side from which the lines come, or past it where they are
 /// near; not nearer than `least`.
@@ -123,46 +117,71 @@ fn vanishing(places: &[(f64, f64)]) -> Option<(f64, f64)> {
 pub struct Cutter<'a> {
     lines: &'a Lines<'a>,
     range: [f64; 2],
-    count: usize,
+    /// All lines looked at.
+    seen: Vec<Line>,
     /// Sequences within sequences that are being looked at.
     nested: usize,
     /// Shares of the whole work between which the present pass over the range lies.
     pass: [f64; 2],
     /// Whether every line was exact.
     pub exact: bool,
+    /// Why the map was given up before its end, and how many lines it has.
+    pub left_out: Option<(LeftOut, usize)>,
+}
+
+/// Why a map is not complete.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeftOut {
+    /// It was stopped.
+    Stopped,
+    /// So many lines did not tell its regions apart.
+    Intricate,
 }
 
 impl<'a> Cutter<'a> {
     /// `range` of the parameter across.
     pub fn new(lines: &'a Lines<'a>, range: [f64; 2]) -> Cutter<'a> {
-        Cutter { lines, range, count: 0, nested: 0, pass: [0.0, 0.1], exact: true }
+        Cutter { lines, range, seen: Vec::new(), nested: 0, pass: [0.0, 0.1], exact: true, left_out: None }
     }
 
     /// The lines at these values.
     fn at(&mut self, places: &[f64]) -> Result<Vec<Line>, PathError> {
-        self.count += places.len();
-        if self.count > LINES {
-            return Err(too_intricate());
+        if self.seen.len() + places.len() > LINES {
+            self.left_out = Some((LeftOut::Intricate, self.seen.len()));
+            return Err(PathError::Interrupted);
         }
         let ([low, high], [begun, ended], lines) = (self.range, self.pass, self.lines);
-        let look = |at: &f64| {
+        let first = self.seen.len();
+        for at in places {
             if lines.case.watch.stop() {
                 return Err(PathError::Interrupted);
             }
             let done = begun + (at - low) / (high - low) * (ended - begun);
             lines.case.watch.progress(&format!("{} = {}", lines.across, short(*at)), done);
-            lines.line(*at)
-        };
-        let found = places.iter().map(look).collect::<Result<Vec<_>, _>>()?;
-        self.exact &= found.iter().all(|(_, exact)| *exact);
-        Ok(found.into_iter().map(|(line, _)| line).collect())
+            let (line, exact) = lines.line(*at)?;
+            self.exact &= exact;
+            self.seen.push(line);
+        }
+        Ok(self.seen[first..].to_vec())
     }
 
-    /// All strips, upwards.
+    /// All strips, upwards; where it is stopped or too intricate, strips as the lines show them so far.
     ///
     /// # Errors
-    /// A value that the scenario cannot take; too many lines; an interruption.
+    /// A value that the scenario cannot take; an interruption before the first lines.
     pub fn panels(&mut self) -> Result<Vec<Panel>, PathError> {
+        let mut panels = match self.exact_panels() {
+            Err(PathError::Interrupted) if self.seen.len() > STRIPS => {
+                self.left_out.get_or_insert((LeftOut::Stopped, self.seen.len()));
+                self.rough_panels()
+            }
+            found => found?,
+        };
+        self.close(&mut panels);
+        Ok(panels)
+    }
+
+    fn exact_panels(&mut self) -> Result<Vec<Panel>, PathError> {
         let [low, high] = self.range;
         // On the border itself a scheme may hold that holds nowhere inside (a friction of 0).
         let inside = ONE_PLACE * (high - low);
@@ -175,8 +194,26 @@ impl<'a> Cutter<'a> {
         let mut panels: Vec<Panel> = Vec::new();
         self.pass = [0.4, 1.0];
         self.measure_all(&found, 0, &mut panels)?;
-        self.close(&mut panels);
         Ok(panels)
+    }
+
+    /// Strips from all lines looked at, the bounds straight between them.
+    fn rough_panels(&mut self) -> Vec<Panel> {
+        let mut lines = std::mem::take(&mut self.seen);
+        lines.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let strips = lines.chunk_by(Line::same_sequence).map(|strip| {
+            // A line that stands alone is a strip of no width.
+            let lines: Vec<Line> = strip.iter().chain((strip.len() == 1).then_some(&strip[0])).cloned().collect();
+            let length = |line: &Line, part: usize| line.parts[part].to - line.parts[part].from;
+            let area = |part: usize| {
+                let between =
+                    |two: &[Line]| 0.5 * (length(&two[0], part) + length(&two[1], part)) * (two[1].at - two[0].at);
+                lines.windows(2).map(between).sum()
+            };
+            let areas = (0..lines[0].parts.len()).map(area).collect();
+            Panel { lines, areas }
+        });
+        strips.collect()
     }
 
     /// Gives the slits between panels, and those at the border, to their neighbours.
@@ -282,7 +319,8 @@ impl<'a> Cutter<'a> {
         self.between(vec![end, other], &mut found)?;
         self.nested += 1;
         if self.nested > NESTED {
-            return Err(too_intricate());
+            self.left_out = Some((LeftOut::Intricate, self.seen.len()));
+            return Err(PathError::Interrupted);
         }
         self.measure_all(&found, depth, panels)?;
         self.nested -= 1;

@@ -7,7 +7,7 @@ use super::statistics::{Found, QUANTILES, Share, Spread, Words, bars};
 use crate::answer::record::Verdict;
 use crate::model::quantity::Quantity;
 use crate::path::envelope::Axis;
-use crate::path::map::{Lines, Scheme, map};
+use crate::path::map::{LeftOut, Lines, Scheme, map};
 use crate::path::profile::{Piece, Shape, number, profile, zero};
 use crate::path::quantity::Value;
 use crate::path::route::Route;
@@ -140,8 +140,11 @@ pub fn of_two(case: Case<'_>, variables: [&Variable; 2]) -> Result<Option<Exact>
     let Ok(axes) = <[Axis; 2]>::try_from(axes) else { return Ok(None) };
     let whole: f64 = axes.iter().map(|axis| axis.range[1] - axis.range[0]).product();
     let found = map(case, axes, None)?;
-    if !found.exact {
-        return Ok(None);
+    match found.left_out {
+        Some((LeftOut::Stopped, _)) => return Err(PathError::Interrupted),
+        Some((LeftOut::Intricate, _)) => return Ok(None),
+        None if !found.exact => return Ok(None),
+        None => {}
     }
     let (mut collapse, mut undecided) = (0.0, 0.0);
     for region in found.regions.iter().filter(|region| region.states.is_none()) {

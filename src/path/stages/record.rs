@@ -21,7 +21,7 @@ pub struct Moment {
     /// Whether the structure jumped here: no quasi-static way led on.
     pub jump: bool,
     /// What every pair did on the way here, and what held it where it was open.
-    pub(super) way: Vec<(State, Option<State>)>,
+    pub(in crate::path) way: Vec<(State, Option<State>)>,
     /// Total z and λ over the joints.
     pub(in crate::path) state: JointState,
     /// What belongs to the way here and not to its ends, where it is no straight line; z is the mean one.

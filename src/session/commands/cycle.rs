@@ -8,6 +8,7 @@ use crate::model::quantity::fits;
 use crate::model::words::no_such;
 use crate::path::cycle::{Kind, MOST, PairSlip, Turn, cycle, shakedown_limit};
 use crate::path::cycle_starts::{StartResult, Starts, from_all};
+use crate::path::exact_cycle::Repetition;
 use crate::path::record::PathRecord;
 use crate::path::stages::Begin;
 use crate::path::static_shakedown::Static;
@@ -95,6 +96,35 @@ impl StaticReport {
     }
 }
 
+/// What is proved in rationals of the repetition.
+#[derive(Serialize)]
+struct ProofReport {
+    proved: bool,
+    working_schemes: Option<usize>,
+    /// `identical`, `contracting`, `open`.
+    map: Option<&'static str>,
+    /// The largest difference between a contact force of the exact cycle and of the one followed, a force.
+    distance: Option<f64>,
+    /// The largest slip that the exact cycle leaves behind, a length.
+    net: Option<f64>,
+    sentence: String,
+}
+
+impl ProofReport {
+    /// `None` where there was nothing to prove.
+    fn of(found: &Repetition) -> Option<ProofReport> {
+        let proved = if let Repetition::Proved(proved) = found { Some(proved) } else { None };
+        Some(ProofReport {
+            proved: proved.is_some(),
+            working_schemes: proved.map(|proved| proved.schemes),
+            map: proved.map(|proved| proved.map.word()),
+            distance: proved.map(|proved| proved.distance),
+            net: proved.map(|proved| proved.net),
+            sentence: view::cycle::repetition(found)?,
+        })
+    }
+}
+
 #[derive(Serialize)]
 struct StartsReport<'a> {
     load: &'a str,
@@ -117,6 +147,7 @@ struct CycleReport<'a> {
     collapse: Option<&'a Ray>,
     /// Slips at the first value.
     start: Vec<PairSlip>,
+    proof: Option<ProofReport>,
     #[serde(rename = "static")]
     every_start: Option<StaticReport>,
     sentence: &'a str,
@@ -175,6 +206,7 @@ impl Session {
             cycles: &found.turns,
             collapse: found.collapse(),
             start: found.start(),
+            proof: ProofReport::of(&found.repetition),
             every_start: StaticReport::of(&found.every_start),
             sentence: &found.sentence,
         };

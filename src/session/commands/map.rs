@@ -1,6 +1,7 @@
 //! `map`: the plane of two parameters cut into its regions of equal working scheme.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use clap::Args;
 use serde_json::{Value as Json, json};
@@ -16,13 +17,16 @@ use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
 
+/// A stopped map is waited for so long: a line and the drawing.
+const PATIENCE: Duration = Duration::from_secs(5);
+
 /// Cut the plane of two parameters into its regions of equal working scheme
 ///
 /// `map P [A..B] Q [C..D] [of QUANTITY]`: parameters or load cases, horizontal and vertical; the ranges are those of
 /// the sliders where they are left out. One of the two is followed on its exact path while the other stands still;
 /// where the order of the schemes changes is found to the last digits. Each region gets its area, and at a place inside
 /// its states, or the collapse with its motion and what is proved of it, and the quantity. In small problems other
-/// answers are looked for there; their regions are hatched. `export map FILE.svg|.json` writes the last map; in the full
+/// answers are looked for there; their regions are hatched. Ctrl-C draws what is known by then. `export map FILE.svg|.json` writes the last map; in the full
 /// screen a cursor in it shows the answer at any place.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  map f 0..1 F2 0..400\n  map f 0..1 F2 0..400 of z_t c6")]
@@ -95,7 +99,8 @@ impl Session {
         };
         let ground = self.ground(io.watch)?;
         let asked = quantity.clone();
-        let found = worker::run(io.watch, move |watch| map(ground.case(watch), axes, asked.as_ref()))??;
+        let found =
+            worker::run_patiently(io.watch, PATIENCE, move |watch| map(ground.case(watch), axes, asked.as_ref()))??;
         let drawn = Arc::new(Drawn { map: found, quantity, values: self.now.values.clone() });
         let report = self.map_json(&drawn);
         io.show(&report, |out, style| view::map::write(out, &drawn.map, &drawn.labels(&self.now.scenario), style))?;
@@ -145,6 +150,7 @@ impl Session {
             "quantity": quantity.as_ref().map(ToString::to_string),
             "regions": regions.collect::<Vec<_>>(),
             "exact": map.exact,
+            "complete": map.left_out.is_none(),
             "notes": map.notes,
         })
     }

@@ -98,12 +98,9 @@ impl ProvedContact {
             all
         };
         let mut stiffness = DMatrix::zeros((1 + tangents) * m, (1 + tangents) * m);
+        let own = system.stiffness_without_noise();
         for (i, &at) in places.iter().enumerate() {
-            for (j, &column) in places.iter().enumerate() {
-                let entry = system.stiffness[(i, j)];
-                // What the condensation leaves of a zero says nothing and would make all fractions long.
-                stiffness[(at, column)] = if entry.abs() > system.entry_noise(i, j) { entry } else { 0.0 };
-            }
+            places.iter().enumerate().for_each(|(j, &column)| stiffness[(at, column)] = own[(i, j)]);
         }
         let kernel = kernel(problem, built).iter().map(|motion| spread(&|joint| motion[joint])).collect();
         let load = spread(&|joint| problem.load[joint]);

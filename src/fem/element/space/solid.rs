@@ -10,7 +10,7 @@
 
 use super::super::incompatible;
 use super::super::jacobian::{SpaceJacobian, Triple};
-use super::super::{Acting, FiniteElement, Stiffness, Stress, free_strain};
+use super::super::{Acting, FiniteElement, Stiffness, Stress, free_strain, weighted};
 use crate::doubled::{Doubled, Real};
 use crate::model::shape_functions::{MOST_OF_SOLID, SolidShape, TETRAHEDRON_SIDES, VolumePoint};
 use crate::model::structure::{ElementLoad, Material};
@@ -146,25 +146,15 @@ impl Solid<'_> {
 
     /// The displacements `u` of its nodes, then the amounts of the incompatible modes.
     fn with_modes(&self, u: &[f64]) -> Vec<f64> {
-        let mut u = u.to_vec();
-        if self.incompatible
-            && let Some(k) = self.stiffness_of_all::<f64>()
-        {
-            incompatible::complete(&k, &mut u, 3 * self.functions());
-        }
-        u
+        let k = self.incompatible.then(|| self.stiffness_of_all::<f64>()).flatten();
+        k.map_or_else(|| u.to_vec(), |k| incompatible::completed(&k, u, 3 * self.functions()))
     }
 
     /// Stress at (ξ, η, ζ) for the displacements `u`, [modes](Self::with_modes) included, and the free expansion
     /// `strain` = α ΔT: extrapolated from the points where the element's stresses are best.
     fn stress_at(&self, at: [f64; 3], u: &[f64], strain: f64) -> Stress {
-        let mut sum = Stress::default();
-        for (point, weight) in self.shape().stress_points().into_iter().zip(self.shape().extrapolation(at)) {
-            for (sum, value) in sum.iter_mut().zip(self.stress_at_point(point, u, strain)) {
-                *sum += weight * value;
-            }
-        }
-        sum
+        let (points, weights) = (self.shape().stress_points(), self.shape().extrapolation(at));
+        weighted(&weights, points.into_iter().map(|point| self.stress_at_point(point, u, strain)))
     }
 
     /// Stress of the strains at (ξ, η, ζ).
