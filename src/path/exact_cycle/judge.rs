@@ -86,7 +86,8 @@ impl PairSigns {
     fn wrong_way(&self, next: &PairSigns) -> Option<&'static str> {
         let closed = self.z_n.is_zero() && next.z_n.is_zero();
         let free = |x_n: &Option<BigRational>| x_n.as_ref().is_some_and(Zero::is_zero);
-        if !closed && !(free(&self.x_n) && free(&next.x_n)) {
+        let open = free(&self.x_n) && free(&next.x_n);
+        if !closed && !open {
             return Some("opens or closes under a force");
         }
         let ((from, here), (to, there)) = (self.tangential.as_ref()?, next.tangential.as_ref()?);

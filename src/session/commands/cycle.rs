@@ -21,10 +21,10 @@ use crate::view;
 
 /// Repeat a load: does the structure shake down, slip to and fro, or creep further with every cycle?
 ///
-/// `cycle LOAD A..B [N]`: from the unloaded structure to A, the other loads at their present factors, then to B and back
-/// to A until a cycle repeats to 1e-12, at most N (256) times. Where the forces and gaps at the end of a cycle are those
-/// at its beginning, every further cycle is the same. LOAD is a load case or a parameter that factors of load cases
-/// depend on. `plot path` draws the loops.
+/// `cycle LOAD A..B [N]`: from the unloaded structure to A, the other loads at their present factors, then to B and
+/// back to A until a cycle repeats to 1e-12, at most N (256) times. Where the forces and gaps at the end of a cycle are
+/// those at its beginning, every further cycle is the same; in small problems a proof of it in rationals is looked for.
+/// LOAD is a load case or a parameter that factors of load cases depend on. `plot path` draws the loops.
 ///
 /// `… from SLIPS` begins at A with slips that something before has left behind: `PAIR=SLIP …` (others 0; a name of an
 /// edge contact or `*` stands for all its pairs), or one number for each pair. Where these do not stand, pairs slip back at
