@@ -5,7 +5,7 @@
 
 use super::exact_cycle::{self, Repetition};
 use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until};
-use super::start::PathError;
+use super::start::{PathError, plane_system};
 use super::static_shakedown::{Static, static_limit, static_shakedown};
 use crate::answer::record::{PairState, Ray};
 use crate::contact::problem::ContactProblem;
@@ -374,9 +374,11 @@ fn said(kind: Kind, turns: &[Turn], history: &History, same: f64) -> String {
     let count = turns.len();
     match kind {
         Kind::ShakesDown => {
-            format!(
-                "nothing slips under a force in cycle {count}: it is elastic, and so is every further one, the same"
-            )
+            let slips = match same {
+                SAME => "nothing slips under a force".to_owned(),
+                _ => format!("what slips under a force loses less than {same:e} of what its largest could on its way"),
+            };
+            format!("{slips} in cycle {count}: it is elastic, and so is every further one, the same")
         }
         Kind::Alternates => format!("the slips of cycle {count} go to and fro; {}", recurrence(turns, same)),
         Kind::Ratchets => format!("cycle {count} leaves slips behind; {}", recurrence(turns, same)),
@@ -448,6 +450,8 @@ pub struct ShakedownLimit {
 /// # Errors
 /// As [`cycle`].
 pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> Result<ShakedownLimit, PathError> {
+    // In space slips are known to the accuracy of the steps: a bracket of nine digits would say more than they do.
+    plane_system(case.prepared, "limit cycle", "`cycle LOAD A..B` tells of one amplitude")?;
     let kind = |to: f64| followed(case, name, [from, to], MOST, &Begin::Unloaded).map(|found| found.kind);
     let (mut good, mut bad) = (from, None);
     let mut to = first;

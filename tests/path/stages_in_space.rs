@@ -5,7 +5,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 use stickslip::answer::record::{OutcomeKind, State, Verdict};
-use stickslip::path::cycle::{Kind, cycle};
+use stickslip::path::cycle::{Kind, cycle, shakedown_limit};
 use stickslip::path::stages::{Begin, History, HistoryEnd, StageResult, follow};
 use stickslip::path::static_shakedown::Static;
 
@@ -322,6 +322,15 @@ fn cycles_in_space_come_to_rest_or_alternate() {
     let end = both.history.stages.last().expect("stages").end.pairs[0].slip();
     near("along y", end[1], 4.0, 1e-6, 4.0);
     assert!(matches!(&rest.every_start, Static::Inapplicable(why) if why.contains("plane")), "{:?}", rest.every_start);
+}
+
+/// The largest amplitude to nine digits is more than the steps of a history in space know.
+#[test]
+fn the_largest_amplitude_is_not_bracketed_in_space() {
+    let case = Case::embedded("bearing-two-way");
+    let values = case.scenario.parameter_values();
+    let refusal = shakedown_limit(case.prepared.case(&case.scenario, &values), "pull-x", [0.0, 6.0]).unwrap_err();
+    assert!(refusal.to_string().contains("`limit cycle` works in the plane only"), "{refusal}");
 }
 
 #[test]

@@ -326,7 +326,7 @@ fn in_space_heights_and_bricks_count() {
     let weightless = with(block, &[("/materials/concrete/density", Value::Null)]);
     let found = warnings(&weightless);
     assert!(
-        found.iter().any(|one| one.path == "loads.weight.items[0]" && one.message.contains("density")),
+        found.iter().any(|one| one.path == "loads.weight.items[0].gravity" && one.message.contains("density")),
         "{found:#?}"
     );
 }
