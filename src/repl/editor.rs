@@ -1,7 +1,7 @@
 //! What the line editor knows of the language: completion, hints, colours.
 
 use std::borrow::Cow;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use rustyline::Context;
@@ -24,12 +24,19 @@ pub struct Editing {
     style: Style,
     /// The line and the cursor in it, as they were seen last.
     line: Mutex<(String, usize)>,
+    /// What hears of the keys.
+    pace: Pace,
 }
 
 impl Editing {
     /// For the names of a session.
     pub fn new(vocabulary: Vocabulary, style: Style) -> Self {
-        Editing { vocabulary, style, line: Mutex::default() }
+        Editing { vocabulary, style, line: Mutex::default(), pace: Pace::default() }
+    }
+
+    /// What hears of the keys.
+    pub fn pace(&self) -> Pace {
+        self.pace.clone()
     }
 
     fn keep(&self, line: &str, position: usize) {
@@ -110,7 +117,9 @@ impl Hinter for Editing {
         if position < line.len() {
             return None;
         }
-        let hint = complete::hint(line, &self.vocabulary)?;
+        let hint = complete::hint(line, &self.vocabulary);
+        self.pace.drawn();
+        let hint = hint?;
         Some(ShownHint {
             text: self.style.text(&hint.text()),
             insert: Some(hint.insert).filter(|insert| !insert.is_empty()),
@@ -121,7 +130,15 @@ impl Hinter for Editing {
 /// The pace of the keys: a line whose end follows its last character at once was pasted or typed ahead, and more
 /// lines may wait behind it in the editor's own buffer.
 #[derive(Clone, Default)]
-pub struct Pace(Arc<Mutex<[Option<Instant>; 2]>>);
+pub struct Pace(Arc<Mutex<Wait>>);
+
+#[derive(Default)]
+struct Wait {
+    /// Since when the editor has had nothing to do but wait for a key.
+    idle_since: Option<Instant>,
+    /// How long it waited for the last one.
+    last: Option<Duration>,
+}
 
 /// No hand is faster.
 const BY_HAND: Duration = Duration::from_millis(5);
@@ -129,18 +146,24 @@ const BY_HAND: Duration = Duration::from_millis(5);
 impl Pace {
     /// Whether the last line came faster than by hand.
     pub fn is_burst(&self) -> bool {
-        let keys = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        match *keys {
-            [Some(before), Some(last)] => last.duration_since(before) < BY_HAND,
-            _ => false,
-        }
+        self.wait().last.is_some_and(|wait| wait < BY_HAND)
+    }
+
+    fn wait(&self) -> MutexGuard<'_, Wait> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The editor has drawn the line: what that took is no pace of the keys.
+    fn drawn(&self) {
+        self.wait().idle_since = Some(Instant::now());
     }
 }
 
 impl ConditionalEventHandler for Pace {
     fn handle(&self, _: &Event, _: u16, _: bool, _: &EventContext<'_>) -> Option<Cmd> {
-        let mut keys = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        *keys = [keys[1], Some(Instant::now())];
+        let mut wait = self.wait();
+        wait.last = wait.idle_since.map(|since| since.elapsed());
+        wait.idle_since = Some(Instant::now());
         None
     }
 }

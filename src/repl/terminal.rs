@@ -114,7 +114,7 @@ impl Input {
     fn open(session: &Session, style: Style, signals: &Signals) -> rustyline::Result<Input> {
         let mut editor = editor(session, style)?;
         let history = History::open(&mut editor);
-        let pace = Pace::default();
+        let pace = editor.helper().map(Editing::pace).unwrap_or_default();
         editor.bind_sequence(Event::Any, EventHandler::Conditional(Box::new(pace.clone())));
         let printer =
             editor.create_external_printer().ok().map(|printer| Box::new(printer) as Box<dyn ExternalPrinter>);
