@@ -1,6 +1,9 @@
 //! Long results on a terminal, a screen at a time.
 
 use std::io::{self, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::Duration;
 
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
@@ -65,9 +68,43 @@ impl Drop for Raw {
     }
 }
 
+/// How long a question may still take after a signal that ends the program.
+const GRACE: Duration = Duration::from_millis(500);
+
+/// While it is kept, the program ends with its terminal: crossterm 0.29 reads the end of file over and over and does not come
+/// back. The journal has all changes already.
+struct EndsWithTerminal(Arc<AtomicBool>);
+
+impl EndsWithTerminal {
+    fn watch(signals: &Signals) -> io::Result<EndsWithTerminal> {
+        let over = Arc::new(AtomicBool::new(false));
+        let (theirs, signals) = (Arc::clone(&over), signals.clone());
+        let look = move || {
+            while !theirs.load(Ordering::SeqCst) {
+                thread::sleep(GRACE);
+                if signals.must_end() {
+                    thread::sleep(GRACE);
+                    if !theirs.load(Ordering::SeqCst) {
+                        std::process::exit(signals.status().into());
+                    }
+                }
+            }
+        };
+        thread::Builder::new().name("hang-up".to_owned()).spawn(look)?;
+        Ok(EndsWithTerminal(over))
+    }
+}
+
+impl Drop for EndsWithTerminal {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::SeqCst);
+    }
+}
+
 fn ask(out: &mut dyn Write, left: usize, signals: &Signals) -> io::Result<Answer> {
     out.flush()?;
     let _stops_wait = signals.raw();
+    let _ends = EndsWithTerminal::watch(signals)?;
     terminal::enable_raw_mode()?;
     let raw = Raw;
     // what is there already was typed before the question

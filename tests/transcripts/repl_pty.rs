@@ -248,14 +248,32 @@ fn a_terminal_that_goes_away() {
     let mut terminal = Terminal::start(Path::new(&folder), "xterm-256color", &[]);
     terminal.prompt();
     terminal.ask("set F2 123", "(was 0.005)");
+    if std::env::var_os("STICKSLIP_TEST_PAGED").is_some() {
+        terminal.type_by_hand("help");
+        terminal.wait("the question", |screen| screen.contains("more: space page"));
+    }
     std::process::exit(0);
 }
 
 #[test]
 fn a_line_that_drops_loses_nothing() {
+    session_is_left_over(false);
+}
+
+#[test]
+fn a_line_that_drops_under_a_long_result_loses_nothing() {
+    session_is_left_over(true);
+}
+
+/// A session whose terminal goes away, at its prompt or while it asks how to go on with a long result, ends and can be
+/// brought back.
+fn session_is_left_over(paged: bool) {
     let folder = folder();
     let helper = ["--exact", "repl_pty::a_terminal_that_goes_away", "--ignored", "--nocapture"];
     let mut command = std::process::Command::new(std::env::current_exe().unwrap());
+    if paged {
+        command.env("STICKSLIP_TEST_PAGED", "1");
+    }
     let output = command.args(helper).env("STICKSLIP_TEST_FOLDER", folder.path()).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     // the program ends a moment later: until then its changes are its own
