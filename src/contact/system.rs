@@ -148,11 +148,6 @@ impl ContactSystem {
         self.force_form.as_ref().is_some_and(|form| form.joints[joint])
     }
 
-    /// Why `command`, which works on R alone and in the plane, cannot be used; `None` where it can.
-    pub fn refusal(&self, command: &str) -> Option<String> {
-        self.space_refusal(command).or_else(|| self.dependence_refusal(command))
-    }
-
     /// Why `command`, which works on R alone, cannot be used; `None` where all joints are independent.
     pub fn dependence_refusal(&self, command: &str) -> Option<String> {
         let exact = self.yielding.as_ref().map_or(self, |yielding| &yielding.exact);

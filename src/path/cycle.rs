@@ -26,6 +26,8 @@ const SAME_NET: f64 = 1e-6;
 const FIRST: usize = 4;
 /// Cycles followed at most, where nothing else is said.
 pub const MOST: usize = 256;
+/// What goes in space in place of `from`: slips have a direction there.
+pub(super) const INSTEAD_OF_SLIPS: &str = "`cycle LOAD A..B` begins at the unloaded structure";
 /// The bracket of the largest amplitude that shakes down is narrowed to this share of it.
 const NARROW: f64 = 1e-9;
 /// The amplitude is doubled this often in search of one that does not.
@@ -257,11 +259,7 @@ pub(super) fn followed(
     let (softest, same) = (softest(system), if system.is_in_space() { SAME_IN_SPACE } else { SAME });
     let (start, turned) = (target(case, name, a)?, target(case, name, b)?);
     if let Begin::Slips(slips) = begin {
-        if system.is_in_space() {
-            let why =
-                "cycle: in space a history begins at the unloaded structure; `from` works in the plane only so far";
-            return Err(PathError::Missing(why.to_owned()));
-        }
+        plane_system(case.prepared, "cycle … from", INSTEAD_OF_SLIPS)?;
         within_reason(&contact_problem(system, &start, case.values), slips)?;
     }
     let mut targets = vec![start.clone()];

@@ -9,9 +9,9 @@
 
 use nalgebra::DVector;
 
-use super::cycle::{Cycle, Kind, PairSlip, Turn, cycle, followed, target};
+use super::cycle::{Cycle, INSTEAD_OF_SLIPS, Kind, PairSlip, Turn, cycle, followed, target};
 use super::stages::{Begin, loose_motions};
-use super::start::PathError;
+use super::start::{PathError, plane_system};
 use super::static_shakedown::{SECONDS, Static, units};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactPair;
@@ -82,10 +82,10 @@ impl Starts {
 /// Follows a load cycle after no slips and after the largest slips both ways of each pair.
 ///
 /// # Errors
-/// As [`cycle`]; too many pairs, joints that repeat one another.
+/// As [`cycle`]; in space, too many pairs, joints that repeat one another.
 pub fn from_all(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Result<Starts, PathError> {
-    let Some(system) = case.prepared.system() else { return Err(PathError::Plain("cycle")) };
-    if let Some(refusal) = system.refusal("cycle … from all") {
+    let system = plane_system(case.prepared, "cycle … from all", INSTEAD_OF_SLIPS)?;
+    if let Some(refusal) = system.dependence_refusal("cycle … from all") {
         return Err(PathError::Missing(refusal));
     }
     let count = system.pair_count();

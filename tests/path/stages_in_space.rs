@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 use stickslip::answer::record::{OutcomeKind, State, Verdict};
 use stickslip::path::cycle::{Kind, cycle, shakedown_limit};
+use stickslip::path::cycle_starts::from_all;
 use stickslip::path::stages::{Begin, History, HistoryEnd, StageResult, follow};
 use stickslip::path::static_shakedown::Static;
 
@@ -331,6 +332,24 @@ fn the_largest_amplitude_is_not_bracketed_in_space() {
     let values = case.scenario.parameter_values();
     let refusal = shakedown_limit(case.prepared.case(&case.scenario, &values), "pull-x", [0.0, 6.0]).unwrap_err();
     assert!(refusal.to_string().contains("`limit cycle` works in the plane only"), "{refusal}");
+}
+
+/// Slips left behind have a direction in space, of which `from` knows nothing: the refusal says what goes instead.
+#[test]
+fn starts_with_slips_are_refused_in_space() {
+    let case = Case::embedded("bearing-two-way");
+    let values = case.scenario.parameter_values();
+    let here = || case.prepared.case(&case.scenario, &values);
+    let begin = Begin::Slips(vec![0.001]);
+    let refusals = [
+        ("`cycle … from`", cycle(here(), "pull-x", [0.0, 6.0], 4, &begin).unwrap_err()),
+        ("`cycle … from all`", from_all(here(), "pull-x", [0.0, 6.0], 4).unwrap_err()),
+    ];
+    for (command, refusal) in refusals {
+        let refusal = refusal.to_string();
+        assert!(refusal.starts_with(&format!("{command} works in the plane only")), "{refusal}");
+        assert!(refusal.ends_with("`cycle LOAD A..B` begins at the unloaded structure"), "{refusal}");
+    }
 }
 
 #[test]
