@@ -59,7 +59,7 @@ pub struct RayReport {
     pub driver: String,
     /// z̄ over the joints, largest entry 1.
     pub direction: DVector<f64>,
-    /// Pair whose z⁺ and z⁻ grow together, of an artefact.
+    /// Of an artefact the pair whose slips grow together and cancel: z⁺ and z⁻, in space along several facets.
     pub artefact: Option<usize>,
     /// The motion of the structure, where z̄ costs no energy; found by [`explain`].
     pub mode: Option<Mode>,
@@ -148,23 +148,12 @@ fn powers(problem: &ContactProblem, direction: &DVector<f64>) -> Vec<CasePower> 
 pub fn look(problem: &ContactProblem, contact: &ContactLcp, ray: &RayDirection, p: f64) -> RayReport {
     let system = &*problem.system;
     let (direction, class, artefact) = classify(problem, contact, ray);
-    let moves = matches!(class, RayClass::Mechanism | RayClass::NoEquilibrium);
-    let powers = if moves { powers(problem, &direction) } else { Vec::new() };
-    RayReport {
-        class,
-        verdict: None,
-        p,
-        driver: contact.name(ray.entering, system),
-        direction,
-        artefact,
-        mode: None,
-        powers,
-        certificate: None,
-        misfit: None,
-        out_of_time: false,
-        certificate_mode: None,
-        balanced: false,
+    let mut report =
+        RayReport { p, driver: contact.name(ray.entering, system), artefact, ..RayReport::of_motion(class, direction) };
+    if report.moves() {
+        report.powers = powers(problem, &report.direction);
     }
+    report
 }
 
 /// Looks for a certificate; true if it proves that there is no answer.
@@ -225,41 +214,41 @@ pub fn all_answers(problem: &ContactProblem, watch: &dyn Watch) -> Option<Enumer
 }
 
 impl RayReport {
-    /// Parts that do not fit together, where the run ended in what would be an answer if their joints yielded.
-    pub fn of_misfit(problem: &ContactProblem, misfit: Misfit) -> RayReport {
+    /// A motion of this class of which nothing else is known yet.
+    fn of_motion(class: RayClass, direction: DVector<f64>) -> RayReport {
         RayReport {
-            class: RayClass::NoEquilibrium,
-            verdict: Some(Verdict::Certified),
+            class,
+            verdict: None,
             p: 0.0,
             driver: String::new(),
-            direction: DVector::zeros(problem.system.joint_count()),
+            direction,
             artefact: None,
             mode: None,
             powers: Vec::new(),
             certificate: None,
-            misfit: Some(misfit),
+            misfit: None,
             out_of_time: false,
             certificate_mode: None,
             balanced: false,
         }
     }
 
+    /// Parts that do not fit together, where the run ended in what would be an answer if their joints yielded.
+    pub fn of_misfit(problem: &ContactProblem, misfit: Misfit) -> RayReport {
+        RayReport {
+            verdict: Some(Verdict::Certified),
+            misfit: Some(misfit),
+            ..RayReport::of_motion(RayClass::NoEquilibrium, DVector::zeros(problem.system.joint_count()))
+        }
+    }
+
     /// A collapse on Coulomb's cone where the run on the polygon ended in an answer: the motion of its certificate.
     pub fn of_certificate(problem: &ContactProblem, certificate: Certificate) -> RayReport {
         RayReport {
-            class: RayClass::Mechanism,
             verdict: Some(Verdict::Certified),
-            p: 0.0,
-            driver: String::new(),
-            direction: certificate.direction.clone(),
-            artefact: None,
-            mode: None,
             powers: powers(problem, &certificate.direction),
-            certificate: Some(certificate),
-            misfit: None,
-            out_of_time: false,
-            certificate_mode: None,
-            balanced: false,
+            certificate: Some(certificate.clone()),
+            ..RayReport::of_motion(RayClass::Mechanism, certificate.direction)
         }
     }
 
@@ -307,25 +296,7 @@ impl RayReport {
     /// What the ray means, in sentences.
     pub fn explanation(&self, system: &ContactSystem, covering: Covering) -> String {
         match self.class {
-            RayClass::Artefact => {
-                let pair = self.artefact.map_or(String::new(), |pair| format!(" {}", system.pairs[pair].id));
-                let cause = if covering == Covering::Ones {
-                    "With friction above 1, covering `ones` takes more friction from every pair than it gives \
-                     ((1 − f)p)"
-                } else {
-                    "An open pair has no friction under covering `weight`, so at the moment of opening both reserves are \
-                     zero together with the contact force"
-                };
-                let choice = if covering == Covering::Ones {
-                    "its two friction reserves are used up before its contact force is"
-                } else {
-                    "the tie-break let its second reserve leave before its contact force"
-                };
-                format!(
-                    "This says nothing about the structure. {cause}: where pair{pair} should open, {choice}, and slip in \
-                     both directions at once, which moves nothing, can grow without end."
-                )
-            }
+            RayClass::Artefact => self.artefact_words(system, covering),
             RayClass::Fault => {
                 let why = if covering == Covering::Ones {
                     " With covering `ones` and friction above 1 a pair cannot open while p > 0 (its reserves sum to \
@@ -340,6 +311,39 @@ impl RayReport {
             }
             RayClass::Mechanism | RayClass::NoEquilibrium => self.no_answer(system, covering),
         }
+    }
+
+    fn artefact_words(&self, system: &ContactSystem, covering: Covering) -> String {
+        let pair = self.artefact.map_or(String::new(), |pair| format!(" {}", system.pairs[pair].id));
+        let [both, used_up, leaves, slips] = match system.is_in_space() {
+            false => {
+                ["both reserves", "its two friction reserves", "its second reserve", "slip in both directions at once"]
+            }
+            true => [
+                "all reserves",
+                "its friction reserves on opposite sides",
+                "reserves on opposite sides",
+                "slip along all of these facets at once",
+            ],
+        };
+        let (cause, choice) = match covering {
+            Covering::Ones => (
+                "With friction above 1, covering `ones` takes more friction from every pair than it gives ((1 − f)p)"
+                    .to_owned(),
+                format!("{used_up} are used up before its contact force is"),
+            ),
+            _ => (
+                format!(
+                    "An open pair has no friction under covering `weight`, so at the moment of opening {both} are zero \
+                     together with the contact force"
+                ),
+                format!("the tie-break let {leaves} leave before its contact force"),
+            ),
+        };
+        format!(
+            "This says nothing about the structure. {cause}: where pair{pair} should open, {choice}, and {slips}, which \
+             moves nothing, can grow without end."
+        )
     }
 
     fn no_answer(&self, system: &ContactSystem, covering: Covering) -> String {
@@ -447,6 +451,34 @@ impl RayReport {
             mode: self.mode_words(system),
             explanation: self.explanation(system, covering),
             misfit: self.misfit.is_some(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::contact::full_lcp::tests::{coulomb, coulomb_in_space};
+
+    /// In space a pair has more than two reserves and no z+ and z-.
+    #[test]
+    fn an_artefact_is_told_in_the_words_of_its_dimension() {
+        for (system, slips) in [
+            (coulomb(DMatrix::identity(2, 2)), "slip in both directions"),
+            (coulomb_in_space(DMatrix::identity(3, 3)), "slip along all of these facets"),
+        ] {
+            let none = DVector::zeros(system.joint_count());
+            let report = RayReport { artefact: Some(0), ..RayReport::of_motion(RayClass::Artefact, none) };
+            for covering in [Covering::Ones, Covering::Weight] {
+                let ray = report.record(&system, covering);
+                assert!(ray.explanation.contains(slips), "{}", ray.explanation);
+                for word in ["z+ and z-", "both", "two"] {
+                    let of_plane = [&ray.mode, &ray.explanation].iter().any(|text| text.contains(word));
+                    assert!(!of_plane || system.tangents == 1, "{}: {}", ray.mode, ray.explanation);
+                }
+            }
         }
     }
 }

@@ -20,10 +20,14 @@ use crate::text::number::{short, with_unit};
 /// Parts of a motion that are named one by one.
 const MOST_PARTS: usize = 6;
 
-/// What a class means, in a few words.
-pub fn class_meaning(class: RayClass) -> &'static str {
-    match class {
+/// What the class of a ray means, in a few words.
+fn class_meaning(ray: &Ray) -> &'static str {
+    let is_in_space = |pair: &PairDirection| matches!(pair.z_t, Slip::Space(_));
+    match ray.class {
         RayClass::Mechanism => "the loads do work on a motion that costs no energy",
+        RayClass::Artefact if ray.direction.pairs().iter().any(is_in_space) => {
+            "slips of a pair along several facets grow together and cancel; says nothing about the structure"
+        }
         RayClass::Artefact => "z+ and z- of a pair grow together; says nothing about the structure",
         RayClass::Fault => "the structure stands without its contacts: an answer exists, the run failed",
         RayClass::NoEquilibrium => "the run found no equilibrium",
@@ -31,7 +35,7 @@ pub fn class_meaning(class: RayClass) -> &'static str {
 }
 
 /// What a verdict means, in a few words.
-pub fn verdict_meaning(verdict: Option<Verdict>) -> &'static str {
+fn verdict_meaning(verdict: Option<Verdict>) -> &'static str {
     match verdict {
         Some(Verdict::Certified) => "no contact forces within friction balance the loads",
         Some(Verdict::Proved) => "enumeration of all working schemes found no answer",
@@ -78,7 +82,7 @@ pub fn write(out: &mut dyn Write, ray: &Ray, units: &Units, style: &Style) -> io
         driver => format!("{driver} enters and nothing blocks it"),
     };
     let rows = [
-        ("class", class_meaning(ray.class)),
+        ("class", class_meaning(ray)),
         ("verdict", verdict.as_str()),
         ("p", p.as_str()),
         ("driver", driver.as_str()),
