@@ -6,6 +6,7 @@ pub mod check_plain;
 pub mod diagram;
 pub mod pair_record;
 pub mod pairs;
+pub mod ray_record;
 pub mod record;
 pub mod rounding;
 pub mod same;
