@@ -16,7 +16,6 @@ use crate::contact::law::PairLaw;
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::exact_system::{give_kernel, telling_joints};
-use crate::contact::system::ContactPair;
 use crate::explain::motions::FreeMotions;
 use crate::explain::ray::Built;
 use crate::lcp::exact::dyadic::{WholeRows, rational, rational_rows};
@@ -81,17 +80,10 @@ impl ProvedContact {
             let (stiffness, load) = (file.matrix.clone(), load.vector.clone());
             return ProvedContact { ids, laws, tangents, polygon, cone, stiffness, kernel: Vec::new(), load };
         }
-        let place = |joint: usize| -> usize {
-            if joint < m {
-                return joint;
-            }
-            // Every joint beyond the normals is a tangential one of a pair.
-            let of = |(i, pair): (usize, &ContactPair)| {
-                Some(tangents * i + pair.tangential.clone().position(|own| own == joint)?)
-            };
-            m + system.pairs.iter().enumerate().find_map(of).unwrap_or_default()
-        };
-        let places: Vec<usize> = (0..system.joint_count()).map(place).collect();
+        let mut places: Vec<usize> = (0..system.joint_count()).collect();
+        for (i, pair) in system.pairs.iter().enumerate() {
+            pair.tangential.clone().enumerate().for_each(|(t, joint)| places[joint] = m + tangents * i + t);
+        }
         let spread = |of: &dyn Fn(usize) -> f64| {
             let mut all = DVector::zeros((1 + tangents) * m);
             places.iter().enumerate().for_each(|(joint, &at)| all[at] = of(joint));
