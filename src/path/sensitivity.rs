@@ -7,7 +7,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use super::rate::{fixed_place, problem_rates, rate, rate_lcp, with_friction_as_cohesion};
 use super::start::{PathError, final_basis, state_of};
 use crate::answer::pairs::JointState;
-use crate::answer::record::PairState;
+use crate::answer::record::{PairState, Slip};
 use crate::contact::cone_rates::{Standing, displacement_rates};
 use crate::contact::force_form::unknowns;
 use crate::contact::problem::ContactProblem;
@@ -64,18 +64,13 @@ impl PairRate {
 
 impl Serialize for PairRate {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
+        let slip = |plane: f64, of: usize| self.space.map_or(Slip::Plane(plane), |space| Slip::Space(space[of]));
+        let mut map = serializer.serialize_map(Some(5))?;
         map.serialize_entry("pair", &self.pair)?;
         map.serialize_entry("x_n", &self.x_n)?;
-        match &self.space {
-            None => map.serialize_entry("x_t", &self.x_t)?,
-            Some([x_t, _]) => map.serialize_entry("x_t", x_t)?,
-        }
+        map.serialize_entry("x_t", &slip(self.x_t, 0))?;
         map.serialize_entry("z_n", &self.z_n)?;
-        match &self.space {
-            None => map.serialize_entry("z_t", &self.z_t)?,
-            Some([_, z_t]) => map.serialize_entry("z_t", z_t)?,
-        }
+        map.serialize_entry("z_t", &slip(self.z_t, 1))?;
         map.end()
     }
 }

@@ -16,43 +16,7 @@ fn signs(signs: &[ExactSign]) -> String {
 /// The finding in sentences, and whether it is good.
 pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
     match check {
-        Exactly::Contact(check) if check.polygon != Polygon::PLANE => {
-            let plane = ExactCheck { polygon: Polygon::PLANE, ..check.clone() };
-            let (role, mut lines) = sentences(&Exactly::Contact(plane), names);
-            lines.push(checked_polygon(check.polygon));
-            (role, lines)
-        }
-        Exactly::Contact(check) => match &check.finding {
-            Finding::Proved { zeros } => {
-                let mut lines = vec![format!(
-                    "proved: {} equations solved and {} signs told in exact arithmetic, all hold",
-                    check.released, check.signs
-                )];
-                if !zeros.is_empty() {
-                    let names: Vec<&str> = zeros.iter().map(|sign| sign.name.as_str()).collect();
-                    lines.push(format!("exactly on a limit: {}", names.join(", ")));
-                }
-                (Role::Good, lines)
-            }
-            Finding::Refuted { violations } => (
-                Role::Bad,
-                vec![
-                    format!("refuted in exact arithmetic: {}", signs(violations)),
-                    "values of the size of rounding mean that the data stand at a limit which f64 cannot store exactly"
-                        .to_owned(),
-                ],
-            ),
-            Finding::Singular { rank, consistent } => (
-                Role::Warning,
-                vec![format!(
-                    "not decided: the {} equations of the working scheme have rank {rank} and {}",
-                    check.released,
-                    if *consistent { "many solutions" } else { "no solution" }
-                )],
-            ),
-            Finding::Interrupted => (Role::Warning, vec!["interrupted".to_owned()]),
-            Finding::Failed => (Role::Warning, vec!["not decided: the exact solver gave up".to_owned()]),
-        },
+        Exactly::Contact(check) => of_contact(check),
         Exactly::Plain(check) => {
             let name = |letter: char, row: usize| format!("{letter}[{}]", names.get(row).map_or("?", String::as_str));
             if !check.unique {
@@ -77,6 +41,42 @@ pub fn sentences(check: &Exactly, names: &[String]) -> (Role, Vec<String>) {
             (Role::Bad, vec![format!("refuted in exact arithmetic: {}", bad.join(", "))])
         }
     }
+}
+
+fn of_contact(check: &ExactCheck) -> (Role, Vec<String>) {
+    let (role, mut lines) = match &check.finding {
+        Finding::Proved { zeros } => {
+            let mut lines = vec![format!(
+                "proved: {} equations solved and {} signs told in exact arithmetic, all hold",
+                check.released, check.signs
+            )];
+            if !zeros.is_empty() {
+                let names: Vec<&str> = zeros.iter().map(|sign| sign.name.as_str()).collect();
+                lines.push(format!("exactly on a limit: {}", names.join(", ")));
+            }
+            (Role::Good, lines)
+        }
+        Finding::Refuted { violations } => (
+            Role::Bad,
+            vec![
+                format!("refuted in exact arithmetic: {}", signs(violations)),
+                "values of the size of rounding mean that the data stand at a limit which f64 cannot store exactly"
+                    .to_owned(),
+            ],
+        ),
+        Finding::Singular { rank, consistent } => (
+            Role::Warning,
+            vec![format!(
+                "not decided: the {} equations of the working scheme have rank {rank} and {}",
+                check.released,
+                if *consistent { "many solutions" } else { "no solution" }
+            )],
+        ),
+        Finding::Interrupted => (Role::Warning, vec!["interrupted".to_owned()]),
+        Finding::Failed => (Role::Warning, vec!["not decided: the exact solver gave up".to_owned()]),
+    };
+    lines.extend((check.polygon != Polygon::PLANE).then(|| checked_polygon(check.polygon)));
+    (role, lines)
 }
 
 /// What friction was in an exact check in space.
