@@ -1,11 +1,8 @@
 //! All answers of a contact problem, by a search over working schemes.
 //!
-//! Depth first, one pair after the other; a partial scheme is cut only where its signs are proved to fail. Two ways to
-//! prove it: In balls (f64 with error bounds) every quantity is kept as an affine function of the displacements of the
-//! pairs not yet decided; deciding a pair eliminates its displacements, and a sign that fails for all
-//! displacements of the others in their box ends the branch. The box: normals z_n ≥ 0 and, where R is positive
-//! definite, that around the ellipsoid zᵀR z ≤ −zᵀq that every answer lies in (zᵀλ ≤ 0 for every answer; q is RF −
-//! R·(g, 0)), with proved bounds ([`crate::contact::schemes::bounding_box`]). Where balls do not cut, the signs and the box are a linear program in exact arithmetic ([`crate::lcp::exact::polyhedron`]). Of a complete scheme it gives all answers, one or a
+//! Depth first, one pair after the other; a partial scheme is cut only where its signs are proved to fail: in balls
+//! ([`crate::contact::schemes::pruning`]), and where these do not cut by the signs and the box of the displacements as a linear
+//! program in exact arithmetic ([`crate::lcp::exact::polyhedron`]). Of a complete scheme it gives all answers, one or a
 //! continuum with its corners and directions. Nothing is accepted or cut by a tolerance.
 
 use std::ops::ControlFlow;
@@ -16,13 +13,12 @@ use num_rational::BigRational;
 use crate::contact::law::{PairLaw, TangentialJoint};
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
-use crate::contact::schemes::ball::{Ball, Row, eliminated};
-use crate::contact::schemes::bounding_box::ellipsoid;
 use crate::contact::schemes::exact_system::{ExactSystem, PairVariables};
-use crate::contact::schemes::scheme::{PairScheme, Tangential, slip_forms};
+use crate::contact::schemes::pruning::{Level, Pruning};
+use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::lcp::exact::all_solutions::Solutions;
 use crate::lcp::exact::corners::corners;
-use crate::lcp::exact::dyadic::{nearest, rational};
+use crate::lcp::exact::dyadic::nearest;
 use crate::lcp::exact::polyhedron::{Polyhedron, State};
 
 /// Undecided pairs from which on the exact linear program pays: without a box, when balls cut little.
@@ -115,20 +111,11 @@ fn choices(law: &PairLaw, polygon: Polygon) -> Vec<PairScheme> {
 /// Finds every answer. `observer` hears of the progress before every step and may stop the search; what was found until
 /// then is returned as incomplete.
 pub fn enumerate(problem: &ContactProblem, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Enumeration {
-    let system = &*problem.system;
     let mut search = Search::new(problem, observer);
-    let mut scheme = Vec::with_capacity(system.pair_count());
-    let root = search.root.clone();
+    let mut scheme = Vec::with_capacity(problem.system.pair_count());
+    let root = search.pruning.root(&search.exact);
     let ended = search.descend(Some(&root), None, &mut scheme, 1.0);
     search.result(ended.is_continue())
-}
-
-/// Rows: one per joint, pair by pair (n, then the tangential ones), holding λ_j or z_j, whichever is not fixed. Columns: the undecided
-/// joints from `first` on, then the constant.
-#[derive(Clone)]
-struct Level {
-    first: usize,
-    rows: Vec<Ball>,
 }
 
 struct Search<'a> {
@@ -136,18 +123,10 @@ struct Search<'a> {
     variables: Vec<PairVariables>,
     observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
     progress: Progress,
-    /// First joint of every pair in the pair by pair order, and their number at the end.
-    offsets: Vec<usize>,
-    /// Joint of R of every joint in the pair by pair order.
-    joints: Vec<usize>,
-    /// Box of every displacement.
-    bounds: Vec<(f64, f64)>,
+    pruning: Pruning<'a>,
     /// Undecided pairs from which on the exact linear program pays.
     worth: usize,
     choices: Vec<Vec<PairScheme>>,
-    /// The forms of the slip that tell its direction.
-    forms: Vec<[f64; 2]>,
-    root: Level,
     solutions: Solutions,
     /// The schemes of every basic solution.
     schemes: Vec<Vec<Vec<PairScheme>>>,
@@ -155,50 +134,21 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(problem: &'a ContactProblem, observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>) -> Self {
-        let system = &*problem.system;
-        let m = system.pair_count();
-        let mut joints = Vec::new();
-        let mut offsets = vec![0];
-        for pair in 0..m {
-            joints.push(pair);
-            joints.extend(system.pairs[pair].tangential.clone());
-            offsets.push(joints.len());
-        }
         let exact = ExactSystem::new(problem);
-        let ball = |value: &BigRational| {
-            let near = nearest(value);
-            if rational(near) == *value { Ball::exactly(near) } else { Ball::rounded(near) }
-        };
-        let mut rows = Vec::with_capacity(joints.len() * (joints.len() + 1));
-        for &i in &joints {
-            rows.extend(joints.iter().map(|&j| ball(&exact.stiffness[i][j])));
-            rows.push(ball(&exact.constants[i]));
-        }
-        let mut bounds: Vec<(f64, f64)> = joints
-            .iter()
-            .map(|joint| if *joint < m { (0.0, f64::INFINITY) } else { (f64::NEG_INFINITY, f64::INFINITY) })
-            .collect();
-        let sides = ellipsoid(&exact.stiffness, &exact.constants, &joints);
-        let worth = match (&sides, system.is_in_space()) {
+        let pruning = Pruning::new(&exact);
+        let worth = match (pruning.has_box, problem.system.is_in_space()) {
             (_, true) => WORTH_IN_SPACE,
-            (Some(_), false) => WORTH_BOXED,
-            (None, false) => WORTH,
+            (true, false) => WORTH_BOXED,
+            (false, false) => WORTH,
         };
-        for (bound, (low, high)) in bounds.iter_mut().zip(sides.into_iter().flatten()) {
-            *bound = (bound.0.max(low), bound.1.min(high));
-        }
         Self {
             variables: exact.variables(),
             exact,
             observer,
             progress: Progress { nodes: 0, share: 0.0, found: 0 },
-            offsets,
-            joints,
-            bounds,
+            pruning,
             worth,
             choices: problem.laws.iter().map(|law| choices(law, problem.polygon)).collect(),
-            forms: slip_forms(problem.polygon),
-            root: Level { first: 0, rows },
             solutions: Solutions::default(),
             schemes: Vec::new(),
         }
@@ -225,8 +175,8 @@ impl<'a> Search<'a> {
             self.progress.nodes += 1;
             (self.observer)(self.progress)?;
             scheme.push(choice);
-            let next = level.and_then(|level| self.decide(level, pair, choice));
-            let hopeless = next.as_ref().is_some_and(|next| self.hopeless(next, scheme));
+            let next = level.and_then(|level| self.pruning.decide(level, pair, choice));
+            let hopeless = next.as_ref().is_some_and(|next| self.pruning.hopeless(next, scheme));
             let result = if hopeless {
                 self.end(left, share)
             } else if left == 0 || next.is_none() || left >= self.worth {
@@ -272,8 +222,7 @@ impl<'a> Search<'a> {
         let (mut polyhedron, mut state, decided) = match above {
             Some((polyhedron, decided)) => (polyhedron.clone(), State::Feasible, decided),
             None => {
-                let sides = self.joints.iter().zip(&self.bounds).map(|(joint, (low, high))| (*joint, *low, *high));
-                let (polyhedron, state) = self.exact.polyhedron(&sides.collect::<Vec<_>>(), &mut go_on);
+                let (polyhedron, state) = self.exact.polyhedron(&self.pruning.sides(), &mut go_on);
                 (polyhedron, state, 0)
             }
         };
@@ -288,147 +237,6 @@ impl<'a> Search<'a> {
             State::Empty => ControlFlow::Continue(None),
             State::Stopped => ControlFlow::Break(()),
         }
-    }
-
-    /// The dictionary with this pair decided; `None` when a pivot may be zero.
-    fn decide(&self, level: &Level, pair: usize, choice: PairScheme) -> Option<Level> {
-        let k = self.joints.len();
-        let width = k + 1 - level.first;
-        let n = self.offsets[pair];
-        let next = self.offsets[pair + 1];
-        let row = |i: usize| &level.rows[i * width..(i + 1) * width];
-
-        // Equations to be solved for the displacements of the released joints, as many as there are of these.
-        let (mut equations, mut released): (Vec<Row>, Vec<usize>) = (Vec::new(), Vec::new());
-        if choice.open {
-            equations.push(row(n).to_vec());
-            released.push(n);
-        }
-        if next - n > 1 && choice.tangential != Tangential::Stick {
-            released.extend(n + 1..next);
-            equations.extend(self.slip_equations(pair, choice, (level.first, width), &row));
-        }
-        let columns: Vec<usize> = released.iter().map(|joint| joint - level.first).collect();
-        let solved = eliminated(equations, &columns)?;
-        // Displacements of this pair in terms of the undecided ones; 0 where the joint is on.
-        let mut displacement: Vec<Option<Row>> = vec![None; next - n];
-        released.iter().zip(solved).for_each(|(joint, row)| displacement[joint - n] = Some(row));
-        let column = |joint: usize| joint - level.first;
-
-        let skip = next - level.first;
-        let mut rows = Vec::with_capacity(k * (width - skip));
-        for i in 0..k {
-            if (n..next).contains(&i)
-                && let Some(z) = &displacement[i - n]
-            {
-                rows.extend_from_slice(&z[skip..]);
-                continue;
-            }
-            let old = row(i);
-            let start = rows.len();
-            rows.extend_from_slice(&old[skip..]);
-            for joint in n..next {
-                if let Some(z) = &displacement[joint - n] {
-                    let factor = old[column(joint)];
-                    if !factor.is_nothing() {
-                        for (x, z) in rows[start..].iter_mut().zip(&z[skip..]) {
-                            *x = x.plus(factor.times(*z));
-                        }
-                    }
-                }
-            }
-        }
-        Some(Level { first: next, rows })
-    }
-
-    /// Whether some sign of the decided pairs fails for all displacements of the others.
-    fn hopeless(&self, level: &Level, scheme: &[PairScheme]) -> bool {
-        let (system, laws) = (&self.exact.problem.system, &self.exact.problem.laws);
-        let polygon = self.exact.problem.polygon;
-        let width = self.joints.len() + 1 - level.first;
-        let row = |i: usize| &level.rows[i * width..(i + 1) * width];
-        let bounds = &self.bounds[level.first..];
-        // Σ factor · row + fixed is negative throughout.
-        let fails = |terms: &[(usize, f64)], fixed: f64| {
-            let entry = |column: usize| {
-                let scaled = |&(i, factor): &(usize, f64)| Ball::exactly(factor).times(row(i)[column]);
-                terms.iter().map(scaled).fold(Ball::ZERO, Ball::plus)
-            };
-            let constant = entry(width - 1).plus(Ball::exactly(fixed));
-            let mut largest = Ball::exactly(constant.largest_times(1.0, 1.0));
-            for (column, (low, high)) in bounds.iter().enumerate() {
-                let most = entry(column).largest_times(*low, *high);
-                if most == f64::INFINITY {
-                    return false;
-                }
-                largest = largest.plus(Ball::exactly(most));
-            }
-            largest.middle + largest.radius < 0.0
-        };
-        scheme.iter().enumerate().any(|(pair, state)| {
-            let n = self.offsets[pair];
-            let bilateral = system.pairs[pair].law.is_bilateral();
-            let fixed = laws[pair].fixed_bound();
-            // z_n where open, x_n where closed.
-            if !bilateral && fails(&[(n, 1.0)], 0.0) {
-                return true;
-            }
-            let tangents = self.offsets[pair + 1] - n - 1;
-            if tangents == 0 {
-                return false;
-            }
-            let along = |parts: [f64; 2]| (0..tangents).map(move |t| (n + 1 + t, parts[t]));
-            match state.tangential {
-                // An open pair without cohesion slips freely.
-                _ if state.open && fixed == 0.0 => false,
-                Tangential::Stick => (0..polygon.facets()).any(|facet| {
-                    let f = if state.open { 0.0 } else { laws[pair].friction() };
-                    fails(&along(polygon.direction(facet)).chain([(n, f)]).collect::<Vec<_>>(), fixed)
-                }),
-                slip => slip.conditions(polygon).signs.into_iter().any(|(form, up)| {
-                    let sign = if up { 1.0 } else { -1.0 };
-                    fails(&along(self.forms[form].map(|part| sign * part)).collect::<Vec<_>>(), 0.0)
-                }),
-            }
-        })
-    }
-
-    /// What a slip asks for, as rows over the undecided displacements: its reserves are zero and, along one facet in space,
-    /// so is the slip across it.
-    fn slip_equations<'b>(
-        &self,
-        pair: usize,
-        choice: PairScheme,
-        (first, width): (usize, usize),
-        row: &dyn Fn(usize) -> &'b [Ball],
-    ) -> Vec<Row> {
-        let (law, polygon) = (&self.exact.problem.laws[pair], self.exact.problem.polygon);
-        let (n, next) = (self.offsets[pair], self.offsets[pair + 1]);
-        // λ_n = 0 where open.
-        let f = if choice.open { Ball::ZERO } else { Ball::exactly(law.friction()) };
-        let reserve = |facet: usize| {
-            let mut equation: Row = row(n).iter().map(|entry| f.times(*entry)).collect();
-            for (joint, part) in (n + 1..next).zip(polygon.direction(facet)) {
-                equation
-                    .iter_mut()
-                    .zip(row(joint))
-                    .for_each(|(sum, entry)| *sum = sum.plus(Ball::exactly(part).times(*entry)));
-            }
-            equation[width - 1] = equation[width - 1].plus(Ball::exactly(law.fixed_bound()));
-            equation
-        };
-        let across = |form: usize| {
-            let mut equation = vec![Ball::ZERO; width];
-            (n + 1..next).zip(self.forms[form]).for_each(|(joint, part)| equation[joint - first] = Ball::exactly(part));
-            equation
-        };
-        // Without cohesion all reserves of an open pair are zero: λ_τ = 0.
-        if choice.open && law.fixed_bound() == 0.0 {
-            return (n + 1..next).map(|joint| row(joint).to_vec()).collect();
-        }
-        let conditions = choice.tangential.conditions(polygon);
-        let reserves = conditions.reserves.into_iter().map(reserve);
-        reserves.chain(conditions.zero.into_iter().map(across)).collect()
     }
 
     /// All answers of a complete scheme.

@@ -7,6 +7,7 @@ pub mod critical;
 pub mod enumerate;
 pub mod exact_check;
 pub(crate) mod exact_system;
+mod pruning;
 pub mod scheme;
 
 #[cfg(test)]
