@@ -9,9 +9,8 @@ use super::state::{RunData, Solved};
 use crate::answer::attempt::AttemptEngine;
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{OutcomeKind, PairState, State};
-use crate::contact::law::PairLaw;
 use crate::contact::schemes::exact_check::{ExactCheck, Finding, exact_check};
-use crate::contact::schemes::scheme::{PairScheme, Tangential};
+use crate::contact::schemes::scheme::{PairScheme, Tangential, schemes_of};
 use crate::watch::{Budget, Watch};
 
 /// Shares up to which the figures of a failed check are worth an exact proof.
@@ -123,28 +122,14 @@ pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
     let RunData::Contact { contact, problem, pivots, last } = &solved.run else {
         return solved.answer.pairs.iter().map(scheme_of).collect();
     };
-    let polygon = problem.polygon;
-    let mut facets: Vec<Vec<usize>> = vec![Vec::new(); problem.laws.len()];
-    let mut open = vec![false; problem.laws.len()];
-    let mut put = |row: usize| {
-        let meaning = contact.rows[row];
-        match meaning.couple.facet() {
-            None => open[meaning.pair] = true,
-            Some(facet) => facets[meaning.pair].push(facet),
-        }
-    };
-    if !pivots.is_empty() {
-        pivots.basis().z.into_iter().for_each(&mut put);
+    let released = if !pivots.is_empty() {
+        pivots.basis().z
     } else if problem.system.is_in_space() {
-        (0..last.z.len()).filter(|&row| last.z[row] > 0.0).for_each(&mut put);
+        (0..last.z.len()).filter(|&row| last.z[row] > 0.0).collect()
     } else {
         return solved.answer.pairs.iter().map(scheme_of).collect();
-    }
-    let scheme = |((open, facets), law): ((&bool, &Vec<usize>), &PairLaw)| match *open && law.fixed_bound() == 0.0 {
-        true => PairScheme::OPEN,
-        false => PairScheme { open: *open, tangential: Tangential::along(facets, polygon) },
     };
-    open.iter().zip(&facets).zip(&problem.laws).map(scheme).collect()
+    schemes_of(released.into_iter().map(|row| contact.rows[row]), &problem.laws, problem.polygon)
 }
 
 /// The working scheme of a pair in the plane as its state is shown.

@@ -1,6 +1,8 @@
 //! The state of one pair in a working scheme, and what it asks for as zeros and signs.
 
+use crate::contact::law::PairLaw;
 use crate::contact::polygon::Polygon;
+use crate::contact::rows::RowId;
 
 /// Tangential joint of a pair: on, or released with the slip along one facet of the friction polygon or between two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -52,7 +54,7 @@ impl Tangential {
     }
 
     /// The state in which a pair slips along these facets, released in any order: two are neighbours or nothing holds the pair.
-    pub fn along(facets: &[usize], polygon: Polygon) -> Tangential {
+    fn along(facets: &[usize], polygon: Polygon) -> Tangential {
         let count = polygon.facets();
         match *facets {
             [] => Tangential::Stick,
@@ -128,6 +130,23 @@ impl PairScheme {
     pub const OPEN: PairScheme = PairScheme { open: true, tangential: Tangential::PLUS };
     /// Open, held by cohesion.
     pub const OPEN_STICK: PairScheme = PairScheme { open: true, tangential: Tangential::Stick };
+}
+
+/// The scheme of every pair where z of these rows is released, in any order.
+pub fn schemes_of(rows: impl IntoIterator<Item = RowId>, laws: &[PairLaw], polygon: Polygon) -> Vec<PairScheme> {
+    let mut open = vec![false; laws.len()];
+    let mut facets: Vec<Vec<usize>> = vec![Vec::new(); laws.len()];
+    for row in rows {
+        match row.couple.facet() {
+            None => open[row.pair] = true,
+            Some(facet) => facets[row.pair].push(facet),
+        }
+    }
+    let scheme = |(pair, law): (usize, &PairLaw)| match open[pair] && law.fixed_bound() == 0.0 {
+        true => PairScheme::OPEN,
+        false => PairScheme { open: open[pair], tangential: Tangential::along(&facets[pair], polygon) },
+    };
+    laws.iter().enumerate().map(scheme).collect()
 }
 
 #[cfg(test)]

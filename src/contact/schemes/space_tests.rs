@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use super::critical::{Coverage, critical_friction};
 use super::enumerate::{Enumeration, enumerate};
 use super::exact_check::{Finding, exact_check};
-use super::scheme::{PairScheme, Tangential};
+use super::scheme::{PairScheme, schemes_of};
 use crate::contact::full_lcp::full_lcp;
 use crate::contact::full_lcp::tests::{coulomb_in_space, plain, tangential_first_on};
 use crate::contact::polygon::Polygon;
@@ -36,25 +36,8 @@ fn lemke(problem: &ContactProblem) -> (DVector<f64>, Vec<PairScheme>) {
     for (row, value) in rows.iter().zip(&run.point.z) {
         row.joints(system, polygon).for_each(|(joint, d)| z[joint] += d * *value);
     }
-    let mut facets = vec![Vec::new(); system.pair_count()];
-    let mut open = vec![false; system.pair_count()];
-    for row in run.pivots.basis().z {
-        match rows[row].couple.facet() {
-            None => open[rows[row].pair] = true,
-            Some(facet) => facets[rows[row].pair].push(facet),
-        }
-    }
-    let scheme = |(open, facets): (&bool, &Vec<usize>)| PairScheme {
-        open: *open,
-        tangential: Tangential::along(facets, polygon),
-    };
-    let mut scheme: Vec<PairScheme> = open.iter().zip(&facets).map(scheme).collect();
-    for (scheme, law) in scheme.iter_mut().zip(&problem.laws).filter(|(_, law)| law.fixed_bound() == 0.0) {
-        if scheme.open {
-            *scheme = PairScheme::OPEN;
-        }
-        assert!(law.friction() >= 0.0);
-    }
+    let released = run.pivots.basis().z.into_iter().map(|row| rows[row]);
+    let scheme = schemes_of(released, &problem.laws, polygon);
     (z, scheme)
 }
 
