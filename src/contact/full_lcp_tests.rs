@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::contact::law::PairLaw;
@@ -59,6 +61,26 @@ fn with_tangents(stiffness: DMatrix<f64>, tangents: usize) -> ContactSystem {
 pub(crate) fn plain(system: &ContactSystem, f: f64, load: &[f64]) -> ContactProblem {
     let laws = vec![PairLaw::rubbing(f, 0.0, 0.0); system.pair_count()];
     ContactProblem::exactly(&Arc::new(system.clone()), laws, DVector::from_row_slice(load))
+}
+
+/// A random number up to a size, whole (so that there are ties) or real.
+pub(crate) fn random_number(random: &mut ChaCha8Rng, whole: bool, size: i32) -> f64 {
+    match whole {
+        true => f64::from(random.random_range(-size..=size)),
+        false => random.random_range(-f64::from(size)..=f64::from(size)),
+    }
+}
+
+/// In three problems of ten the first pair has a fixed bound, in three of ten the last one a gap.
+pub(crate) fn with_random_bound_and_gap(mut problem: ContactProblem, random: &mut ChaCha8Rng) -> ContactProblem {
+    let last = problem.laws.len() - 1;
+    if random.random_bool(0.3) {
+        problem.laws[0] = problem.laws[0].with_fixed_bound(1.0);
+    }
+    if random.random_bool(0.3) {
+        problem.laws[last] = problem.laws[last].with_gap(0.5);
+    }
+    problem
 }
 
 /// Normals last: the default rule.

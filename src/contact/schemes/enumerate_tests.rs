@@ -8,7 +8,9 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::contact::full_lcp::full_lcp;
-use crate::contact::full_lcp::tests::{beam, beam_problem, coulomb, plain, tangential_first};
+use crate::contact::full_lcp::tests::{
+    beam, beam_problem, coulomb, plain, random_number, tangential_first, with_random_bound_and_gap,
+};
 use crate::contact::rows::rows;
 use crate::contact::schemes::critical::tests::unit_square;
 use crate::lcp::driver::run;
@@ -126,13 +128,7 @@ fn lemke(problem: &ContactProblem) -> Option<DVector<f64>> {
 /// Random R = AᵀA (integers with ties, or reals), `loose` rows fewer than needed.
 fn random_problem(random: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -> ContactProblem {
     let k = 2 * m;
-    let mut number = |range: i32| {
-        if ties {
-            f64::from(random.random_range(-range..=range))
-        } else {
-            random.random_range(-f64::from(range)..=f64::from(range))
-        }
-    };
+    let mut number = |size: i32| random_number(random, ties, size);
     let a = DMatrix::from_fn(k + 1 - loose, k, |_, _| number(2));
     let mut r = a.transpose() * &a;
     if loose == 0 {
@@ -140,14 +136,7 @@ fn random_problem(random: &mut ChaCha8Rng, m: usize, ties: bool, loose: usize) -
     }
     let load: Vec<f64> = (0..k).map(|_| number(4)).collect();
     let f = [0.25, 0.5, 1.0, 3.0][random.random_range(0..4)];
-    let mut problem = plain(&coulomb(r), f, &load);
-    if random.random_bool(0.3) {
-        problem.laws[0] = problem.laws[0].with_fixed_bound(1.0);
-    }
-    if random.random_bool(0.3) {
-        problem.laws[m - 1] = problem.laws[m - 1].with_gap(0.5);
-    }
-    problem
+    with_random_bound_and_gap(plain(&coulomb(r), f, &load), random)
 }
 
 #[test]

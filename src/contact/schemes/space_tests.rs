@@ -11,7 +11,9 @@ use super::enumerate::{Enumeration, enumerate};
 use super::exact_check::{Finding, exact_check};
 use super::scheme::{PairScheme, schemes_of};
 use crate::contact::full_lcp::full_lcp;
-use crate::contact::full_lcp::tests::{coulomb_in_space, plain, tangential_first_on};
+use crate::contact::full_lcp::tests::{
+    coulomb_in_space, plain, random_number, tangential_first_on, with_random_bound_and_gap,
+};
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::rows;
@@ -44,24 +46,15 @@ fn lemke(problem: &ContactProblem) -> (DVector<f64>, Vec<PairScheme>) {
 /// Random positive definite R, in whole numbers with ties or in reals.
 fn random_problem(random: &mut ChaCha8Rng, m: usize, ties: bool) -> ContactProblem {
     let k = 3 * m;
-    let mut number = |range: i32| match ties {
-        true => f64::from(random.random_range(-range..=range)),
-        false => random.random_range(-f64::from(range)..=f64::from(range)),
-    };
+    let mut number = |size: i32| random_number(random, ties, size);
     let a = DMatrix::from_fn(k, k, |_, _| number(2));
     let r = a.transpose() * &a + DMatrix::identity(k, k);
     let load: Vec<f64> = (0..k).map(|_| number(4)).collect();
     let f = [0.0, 0.25, 0.5, 1.0, 2.0, 5.0][random.random_range(0..6)];
     let facets = [4, 6, 8, 12, 16][random.random_range(0..5)];
     let turn = if random.random_bool(0.3) { 0.1 } else { 0.0 };
-    let mut problem = plain(&coulomb_in_space(r), f, &load).with_polygon(Polygon::regular(facets, turn));
-    if random.random_bool(0.3) {
-        problem.laws[0] = problem.laws[0].with_fixed_bound(1.0);
-    }
-    if random.random_bool(0.3) {
-        problem.laws[m - 1] = problem.laws[m - 1].with_gap(0.5);
-    }
-    problem
+    let problem = plain(&coulomb_in_space(r), f, &load).with_polygon(Polygon::regular(facets, turn));
+    with_random_bound_and_gap(problem, random)
 }
 
 #[test]
