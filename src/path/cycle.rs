@@ -180,7 +180,7 @@ struct Sizes {
 }
 
 impl Sizes {
-    fn of(stages: &[StageResult], softest: f64) -> Sizes {
+    fn of(stages: &[StageResult], (softest, same): (f64, f64)) -> Sizes {
         let moments = || stages.iter().flat_map(|stage| &stage.moments);
         let largest = |of: &dyn Fn(&PairState) -> f64| {
             moments().flat_map(|moment| &moment.pairs).map(|pair| of(pair).abs()).fold(0.0, f64::max)
@@ -189,7 +189,7 @@ impl Sizes {
         let terms = moments().map(|moment| moment.state.terms.amax()).fold(force, f64::max);
         let slips = stages.iter().flat_map(|stage| &stage.slip).fold(0.0, |a: f64, slip| a.max(slip.abs()));
         let way = slips.max(terms * softest);
-        Sizes { force, terms, way, gap: largest(&|pair| pair.z_n).max(way), same: SAME }
+        Sizes { force, terms, way, gap: largest(&|pair| pair.z_n).max(way), same }
     }
 
     /// A difference of forces as a share of the largest; 0 where it is rounding.
@@ -303,7 +303,7 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
 /// `complete` ends in a limit.
 fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -> (Kind, Vec<Turn>) {
     let end = |stage: usize| &stages[stage].end.pairs;
-    let sizes = Sizes { same, ..Sizes::of(stages, softest) };
+    let sizes = Sizes::of(stages, (softest, same));
     let cycles = (stages.len() - usize::from(!complete)).saturating_sub(1) / 2;
     let mut turns: Vec<Turn> = Vec::new();
     let mut kind = Kind::Undecided;

@@ -68,16 +68,15 @@ impl<'q, 'a> Equations<'q, 'a> {
         let mut row = vec![BigRational::zero(); question.problem().system.joint_count() + 1];
         let mut right = vec![BigRational::zero(); parameters + 1];
         right[parameters] = -constant.clone();
-        let constants: Vec<(&BigRational, BigRational)> = question.constants(self.half).collect();
         for (joint, factor) in terms.iter().filter(|(_, factor)| !factor.is_zero()) {
             let stiffness = &question.ends[0].stiffness[*joint];
-            let (from, change) = &constants[*joint];
-            for (entry, r) in row.iter_mut().zip(stiffness.iter().chain([change])) {
+            let (from, change) = question.constant(self.half, *joint);
+            for (entry, r) in row.iter_mut().zip(stiffness.iter().chain([&change])) {
                 if !r.is_zero() {
                     *entry += factor * r;
                 }
             }
-            right[parameters] -= factor * *from;
+            right[parameters] -= factor * from;
         }
         self.rows.push(row);
         self.right.push(right);
@@ -367,7 +366,7 @@ impl Family<'_> {
     fn force(&self, question: &Question<'_>, place: usize, joint: usize) -> Affine {
         let (z, t) = &self.places[place];
         let half = self.half_of(place);
-        let (from, change) = question.constants(half).nth(joint).unwrap_or_else(|| unreachable!("a joint"));
+        let (from, change) = question.constant(half, joint);
         let row = &question.ends[0].stiffness[joint];
         let n = self.slips.len();
         let column = |column: usize| {
@@ -384,13 +383,16 @@ impl Family<'_> {
         let (slips, by) = clear_denominators(&slips.iter().cloned().chain([BigRational::one()]).collect::<Vec<_>>());
         let slips = (slips, by);
         let value = |affine: &Affine| product(&clear_denominators(affine), &slips);
+        let rows: Vec<_> = question.ends[0].stiffness.iter().map(|row| clear_denominators(row)).collect();
         let places = self.places.iter().enumerate().map(|(k, (z, t))| {
             let half = self.half_of(k);
             let (t, z): (BigRational, Vec<BigRational>) = (value(t), z.iter().map(value).collect());
             let whole = clear_denominators(&z);
-            let constants = question.constants(half).map(|(from, change)| from + change * &t);
-            let rows = question.ends[0].stiffness.iter().map(|row| product(&clear_denominators(row), &whole));
-            Place { half, force: rows.zip(constants).map(|(own, constant)| own + constant).collect(), t, z }
+            let force = rows.iter().enumerate().map(|(joint, row)| {
+                let (from, change) = question.constant(half, joint);
+                product(row, &whole) + from + change * &t
+            });
+            Place { half, force: force.collect(), t, z }
         });
         places.collect()
     }

@@ -33,7 +33,7 @@ const PASSES: usize = 3;
 /// Contact forces of the exact cycle and of the one followed differ by at most this share of the largest.
 const NEAR: f64 = 1e-9;
 /// Time for one proof.
-pub const SECONDS: u64 = 10;
+const SECONDS: u64 = 10;
 
 /// What is proved of the repetition of a cycle.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,10 +132,10 @@ impl Question<'_> {
         self.ends[0].problem
     }
 
-    /// Constants of λ at the beginning of a half and their change over it.
-    fn constants(&self, half: usize) -> impl Iterator<Item = (&BigRational, BigRational)> {
-        let (from, to) = (&self.ends[half].constants, &self.ends[1 - half].constants);
-        from.iter().zip(to).map(|(from, to)| (from, to - from))
+    /// The constant of a joint's λ at the beginning of a half, and its change over it.
+    fn constant(&self, half: usize, joint: usize) -> (&BigRational, BigRational) {
+        let [from, to] = [half, 1 - half].map(|end| &self.ends[end].constants[joint]);
+        (from, to - from)
     }
 }
 

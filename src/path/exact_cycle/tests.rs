@@ -40,10 +40,13 @@ fn little() -> BigRational {
 }
 
 fn with_force(question: &Question<'_>, place: &mut Place) {
-    let constants = question.constants(place.half).map(|(from, change)| from + change * &place.t);
-    let own = question.ends[0].stiffness.iter().map(|row| row.iter().zip(&place.z).map(|(r, z)| r * z).sum());
-    let force: Vec<BigRational> = own.zip(constants).map(|(own, constant): (BigRational, _)| own + constant).collect();
-    place.force = force;
+    let rows = question.ends[0].stiffness.iter().enumerate();
+    let force = rows.map(|(joint, row)| {
+        let (from, change) = question.constant(place.half, joint);
+        let own: BigRational = row.iter().zip(&place.z).map(|(r, z)| r * z).sum();
+        own + from + change * &place.t
+    });
+    place.force = force.collect();
 }
 
 /// No displacement of any joint at any place may be altered, however little: what was on a bound is not any more, or slips
