@@ -10,7 +10,7 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::change::{Breakpoint, between, sentence, with_directions};
-use super::cone_step::{Scheme, Step, Stepper};
+use super::cone_step::{Step, Stepper};
 use super::end::PathEnd;
 use super::load::LoadReach;
 use super::load_parameter::LoadParameter;
@@ -306,8 +306,7 @@ impl Path<'_> {
             if middle == before.value || middle == after.value {
                 break;
             }
-            let share = 0.5;
-            let guess = &before.step.z * (1.0 - share) + &after.step.z * share;
+            let guess = (&before.step.z + &after.step.z) * 0.5;
             match self.near(stepper, middle, &guess)? {
                 Some(found) if found.step.scheme == before.step.scheme => before = found,
                 Some(found) => after = found,
@@ -345,7 +344,7 @@ impl Path<'_> {
     fn change(&self, path: &mut ConePath, before: &Stand, after: &Stand, jump: bool) {
         let there = self.place(after);
         let ids = there.pairs.iter().map(|pair| pair.id.as_str());
-        let mut changes = between(ids, &scheme(before), &scheme(after));
+        let mut changes = between(ids, &before.step.scheme, &after.step.scheme);
         with_directions(&mut changes, &there.pairs);
         let place = path.places.len() - 1;
         if !changes.is_empty() || jump {
@@ -358,10 +357,6 @@ impl Path<'_> {
     fn breakdown(&self, at: f64, why: String) -> PathError {
         PathError::Breakdown { name: self.name.to_owned(), at, why }
     }
-}
-
-fn scheme(stand: &Stand) -> Scheme {
-    stand.step.scheme.clone()
 }
 
 fn guess(here: &Stand, slope: Option<&DVector<f64>>, to: f64) -> DVector<f64> {

@@ -112,8 +112,11 @@ pub(super) fn taken(
 ) -> Result<Taken, PathError> {
     let mut before: Row = Vec::new();
     for n in 1..=ROWS {
-        let Some((end, way, last)) = in_steps(stepper, problem, begin, (h, n))? else { return Ok(Taken::Shorter) };
-        let Some(last) = last else { return Ok(Taken::Changes) };
+        let (end, way, last) = match in_steps(stepper, problem, begin, (h, n))? {
+            InSteps::Whole { end, way, last } => (end, way, last),
+            InSteps::Changes => return Ok(Taken::Changes),
+            InSteps::Nowhere => return Ok(Taken::Shorter),
+        };
         let k = end.len();
         let mut row: Row =
             vec![DVector::from_iterator(2 * k + 1, end.iter().chain(way.z.iter()).copied().chain([way.dissipated]))];
@@ -141,24 +144,32 @@ pub(super) fn taken(
     Ok(Taken::Shorter)
 }
 
-/// The end of a leg in n steps, its integrals, and z before the last step; without the last where a pair does something else,
-/// `None` where a step has no answer.
-#[expect(clippy::type_complexity, reason = "what one step after the other leaves, taken apart at once")]
+/// Where steps of one length lead to.
+enum InSteps {
+    /// z at the end and before the last of them, and their integrals.
+    Whole { end: DVector<f64>, way: Integrals, last: DVector<f64> },
+    /// To something else that a pair does.
+    Changes,
+    /// To a step that has no answer.
+    Nowhere,
+}
+
+/// Takes a leg in n steps.
 fn in_steps(
     stepper: &Stepper<'_>,
     problem: &dyn Fn(f64) -> ContactProblem,
     begin: &Begin<'_>,
     (h, n): (f64, usize),
-) -> Result<Option<(DVector<f64>, Integrals, Option<DVector<f64>>)>, PathError> {
+) -> Result<InSteps, PathError> {
     let step = h / n as f64;
     let (mut z, mut force) = (begin.z.clone(), begin.force.clone());
     let (mut last, mut rate) = (z.clone(), begin.rate.clone());
     let mut way = Integrals { z: DVector::zeros(z.len()), dissipated: 0.0 };
     for j in 1..=n {
         let at = problem(begin.t + h * (j as f64 / n as f64));
-        let Some(next) = stepper.near(at.clone(), &z, &(&z + &rate * step))? else { return Ok(None) };
+        let Some(next) = stepper.near(at.clone(), &z, &(&z + &rate * step))? else { return Ok(InSteps::Nowhere) };
         if next.scheme != *begin.scheme {
-            return Ok(Some((z, way, None)));
+            return Ok(InSteps::Changes);
         }
         let Step { z: to, increments, .. } = next;
         way = way.plus(&Integrals::straight(step, [&z, &to], [&force, &increments.force], &at.system));
@@ -166,7 +177,7 @@ fn in_steps(
         last = std::mem::replace(&mut z, to);
         force = increments.force;
     }
-    Ok(Some((z, way, Some(last))))
+    Ok(InSteps::Whole { end: z, way, last })
 }
 
 /// The place on the way from `begin` up to which single steps keep the scheme, between 0 and h, to `digits` of a stage.
