@@ -41,8 +41,9 @@ const SHORT: f64 = 1e-7;
 const HERE: f64 = 1e-10;
 /// The longest leg, as a part of a stage: what happens and is undone within one would not be seen.
 const LONGEST: f64 = 0.125;
-/// A leg that was taken in at most so many steps is followed by a longer one, one in more by a shorter one.
-const EASY: usize = 4;
+/// A leg that was taken in at most so many steps is followed by one of twice its length: k (k + 1)/2 steps in all are worth
+/// most per length where k is near the largest.
+const EASY: usize = 6;
 /// No stage has more legs than this.
 const LEGS: usize = 50_000;
 /// Events that follow one another so often are crossed in longer and longer steps.
