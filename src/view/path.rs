@@ -62,55 +62,69 @@ fn role_of(end: &PathEnd) -> Role {
     }
 }
 
+/// A path from its start: where that is, its breakpoints with the pairs there and what is said of a jump, and its end.
+struct FromStart<'a> {
+    name: &'a str,
+    start: f64,
+    from_zero: bool,
+    breakpoints: &'a [Breakpoint],
+    pairs_at: &'a dyn Fn(usize) -> &'a [PairState],
+    jump: &'static str,
+    end: (&'a PathEnd, String),
+}
+
+impl FromStart<'_> {
+    fn write(&self, out: &mut dyn Write, units: &Units, style: &Style) -> io::Result<()> {
+        let name = self.name;
+        if self.from_zero {
+            let text = format!("there is no answer at the present load: the path starts from {name} = 0");
+            style.paragraph(out, Role::Muted, &text)?;
+        }
+        if self.breakpoints.is_empty() {
+            let text = format!("no breakpoints from {name} = {}", exact(self.start));
+            style.paragraph(out, Role::Plain, &text)?;
+        } else {
+            let row = |at: &Breakpoint| {
+                let jump = if at.jump { self.jump } else { "" };
+                (at.value, format!("{}{jump}", at.sentence), Some(max_slip((self.pairs_at)(at.place))))
+            };
+            let rows: Vec<_> = self.breakpoints.iter().map(row).collect();
+            breakpoints(out, name, &rows, units, style)?;
+        }
+        let (end, sentence) = &self.end;
+        style.paragraph(out, role_of(end), sentence)
+    }
+}
+
 /// Writes the breakpoints of a load path and how it ended.
 pub fn write_load(out: &mut dyn Write, path: &LoadPath, units: &Units, style: &Style) -> io::Result<()> {
-    let name = &path.parameter.name;
-    if path.from_zero {
-        let text = format!("there is no answer at the present load: the path starts from {name} = 0");
-        style.paragraph(out, Role::Muted, &text)?;
-    }
-    if path.breakpoints.is_empty() {
-        let text = format!("no breakpoints from {name} = {}", exact(path.start));
-        style.paragraph(out, Role::Plain, &text)?;
-    } else {
-        let rows: Vec<_> = path
-            .breakpoints
-            .iter()
-            .map(|breakpoint| {
-                let mut sentence = breakpoint.sentence.clone();
-                if breakpoint.jump {
-                    sentence.push_str(" (after moving at constant load)");
-                }
-                let slip = max_slip(&path.pairs[breakpoint.place]);
-                (breakpoint.value, sentence, Some(slip))
-            })
-            .collect();
-        breakpoints(out, name, &rows, units, style)?;
-    }
-    style.paragraph(out, role_of(&path.end), &path.end_sentence())
+    let way = FromStart {
+        name: &path.parameter.name,
+        start: path.start,
+        from_zero: path.from_zero,
+        breakpoints: &path.breakpoints,
+        pairs_at: &|place| &path.pairs[place],
+        jump: " (after moving at constant load)",
+        end: (&path.end, path.end_sentence()),
+    };
+    way.write(out, units, style)
 }
 
 /// Writes the breakpoints of a path in space and how it ended.
 pub fn write_on_cone(out: &mut dyn Write, path: &ConePath, units: &Units, style: &Style) -> io::Result<()> {
-    let name = &path.name;
-    if path.from_zero {
-        let text = format!("there is no answer at the present load: the path starts from {name} = 0");
-        style.paragraph(out, Role::Muted, &text)?;
-    }
-    if path.breakpoints.is_empty() {
-        let text = format!("no breakpoints from {name} = {}", exact(path.start));
-        style.paragraph(out, Role::Plain, &text)?;
-    } else {
-        let row = |at: &Breakpoint| {
-            let jump = if at.jump { " (a jump to another answer)" } else { "" };
-            (at.value, format!("{}{jump}", at.sentence), Some(max_slip(&path.places[at.place].pairs)))
-        };
-        let rows: Vec<_> = path.breakpoints.iter().map(row).collect();
-        breakpoints(out, name, &rows, units, style)?;
-    }
-    style.paragraph(out, role_of(&path.end), &path.end_sentence())?;
+    let way = FromStart {
+        name: &path.name,
+        start: path.start,
+        from_zero: path.from_zero,
+        breakpoints: &path.breakpoints,
+        pairs_at: &|place| &path.places[place].pairs,
+        jump: " (a jump to another answer)",
+        end: (&path.end, path.end_sentence()),
+    };
+    way.write(out, units, style)?;
     let steps = format!(
-        "followed on Coulomb's cone in {} steps, each an answer that passed its check; that nothing else happens within a          step is not proved",
+        "followed on Coulomb's cone in {} steps, each an answer that passed its check; that nothing else happens within a \
+         step is not proved",
         path.places.len()
     );
     style.paragraph(out, Role::Muted, &steps)

@@ -1,5 +1,6 @@
 //! `trace`: the answer followed over a load or a friction coefficient.
 
+use std::io::{self, Write};
 use std::sync::Arc;
 
 use clap::Args;
@@ -12,7 +13,6 @@ use crate::path::change::{Breakpoint, Change};
 use crate::path::friction::{self, FrictionPath, Interval, is_friction};
 use crate::path::load::{self, LoadPath, LoadReach};
 use crate::path::on_cone::{self, ConePath};
-use crate::path::quantity::OnPath;
 use crate::path::record::PathRecord;
 use crate::session::commands::along::Along;
 use crate::session::language::candidates::{Asked, Candidate};
@@ -21,6 +21,7 @@ use crate::session::start::case_names;
 use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::solve::Prepared;
 use crate::view;
+use crate::view::style::Style;
 
 /// Friction without a target and without a slider ends here.
 const FRICTION: f64 = 10.0;
@@ -118,14 +119,9 @@ impl Session {
                 friction::trace(ground.case(watch), Some(&ground.solved), &what, to)
             })??;
             let record = PathRecord::of_friction(&path);
-            let along = self.report_along(&geometry, &record, &quantities, io.watch)?;
-            let report = FrictionReport::of(&path, &record, &along);
-            io.show(&report, |out, style| {
-                view::path::write_friction(out, &path, &units, style)?;
-                view::quantities::write_along(out, &record, &along, &units, style)
-            })?;
-            self.keep_path(record);
-            return Ok(());
+            return self.show_way(record, &FrictionReport::of(&path), (&geometry, &quantities), io, |out, style| {
+                view::path::write_friction(out, &path, &units, style)
+            });
         }
         if in_space {
             let path = worker::run(io.watch, move |watch| {
@@ -137,17 +133,11 @@ impl Session {
             load::trace(ground.case(watch), Some(&ground.solved), &what, LoadReach { to, through })
         })??;
         let record = PathRecord::of_load(&path, &case_names(&geometry));
-        let along = self.report_along(&geometry, &record, &quantities, io.watch)?;
-        let report = LoadReport::of(&path, &record, &along);
-        io.show(&report, |out, style| {
-            view::path::write_load(out, &path, &units, style)?;
-            view::quantities::write_along(out, &record, &along, &units, style)
-        })?;
-        self.keep_path(record);
-        Ok(())
+        self.show_way(record, &LoadReport::of(&path), (&geometry, &quantities), io, |out, style| {
+            view::path::write_load(out, &path, &units, style)
+        })
     }
 
-    /// Shows a path in space and keeps it.
     fn show_on_cone(
         &mut self,
         path: &ConePath,
@@ -157,20 +147,44 @@ impl Session {
     ) -> Result<(), CommandError> {
         let units = self.now.scenario.units.clone();
         let record = PathRecord::of_cone(path, &case_names(geometry));
+        self.show_way(record, &ConeReport::of(path), (geometry, quantities), io, |out, style| {
+            view::path::write_on_cone(out, path, &units, style)
+        })
+    }
+
+    /// Shows a path with the quantities along it, and keeps it.
+    fn show_way(
+        &mut self,
+        record: PathRecord,
+        report: &impl Serialize,
+        (geometry, quantities): (&Prepared, &[Quantity]),
+        io: &mut Output<'_>,
+        write: impl FnOnce(&mut dyn Write, &Style) -> io::Result<()>,
+    ) -> Result<(), CommandError> {
         let along = self.report_along(geometry, &record, quantities, io.watch)?;
-        io.show(&ConeReport::of(path, &record, &along), |out, style| {
-            view::path::write_on_cone(out, path, &units, style)?;
-            view::quantities::write_along(out, &record, &along, &units, style)
+        let report = Report { along: Along::of(&record, &along), path: report, end: &record.end };
+        let units = &self.now.scenario.units;
+        io.show(&report, |out, style| {
+            write(out, style)?;
+            view::quantities::write_along(out, &record, &along, units, style)
         })?;
         self.keep_path(record);
         Ok(())
     }
 }
 
+/// A path with what all of them have.
+#[derive(Serialize)]
+struct Report<'a, P> {
+    along: Along<'a>,
+    #[serde(flatten)]
+    path: &'a P,
+    end: &'a str,
+}
+
 /// A path in space, with the keys of the two below that it has.
 #[derive(Serialize)]
 struct ConeReport<'a> {
-    along: Along<'a>,
     #[serde(skip_serializing_if = "Option::is_none")]
     load: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -180,7 +194,6 @@ struct ConeReport<'a> {
     breakpoints: Vec<ConeTurn<'a>>,
     limit: Option<f64>,
     last: f64,
-    end: &'a str,
 }
 
 #[derive(Serialize)]
@@ -194,7 +207,7 @@ struct ConeTurn<'a> {
 }
 
 impl<'a> ConeReport<'a> {
-    fn of(path: &'a ConePath, record: &'a PathRecord, along: &'a [OnPath]) -> Self {
+    fn of(path: &'a ConePath) -> Self {
         let name = path.name.as_str();
         let turn = |at: &'a Breakpoint| ConeTurn {
             factor: (!path.over_friction).then_some(at.value),
@@ -204,7 +217,6 @@ impl<'a> ConeReport<'a> {
             sentence: &at.sentence,
         };
         ConeReport {
-            along: Along::of(record, along),
             load: (!path.over_friction).then_some(name),
             parameter: path.over_friction.then_some(name),
             start: path.start,
@@ -212,7 +224,6 @@ impl<'a> ConeReport<'a> {
             breakpoints: path.breakpoints.iter().map(turn).collect(),
             limit: path.limit(),
             last: path.last(),
-            end: &record.end,
         }
     }
 }
@@ -220,11 +231,9 @@ impl<'a> ConeReport<'a> {
 /// A path over friction.
 #[derive(Serialize)]
 struct FrictionReport<'a> {
-    along: Along<'a>,
     parameter: &'a str,
     intervals: Vec<States<'a>>,
     breakpoints: Vec<Jump<'a>>,
-    end: &'a str,
 }
 
 /// The states between two breakpoints.
@@ -244,7 +253,7 @@ struct Jump<'a> {
 }
 
 impl<'a> FrictionReport<'a> {
-    fn of(path: &'a FrictionPath, record: &'a PathRecord, along: &'a [OnPath]) -> Self {
+    fn of(path: &'a FrictionPath) -> Self {
         let states = |interval: &'a Interval| States {
             from: interval.from,
             to: interval.to,
@@ -255,11 +264,9 @@ impl<'a> FrictionReport<'a> {
             Jump { value: *value, changes, jump: *jump, sentence }
         };
         FrictionReport {
-            along: Along::of(record, along),
             parameter: &path.name,
             intervals: path.intervals.iter().map(states).collect(),
             breakpoints: path.breakpoints.iter().map(jump).collect(),
-            end: &record.end,
         }
     }
 }
@@ -267,14 +274,12 @@ impl<'a> FrictionReport<'a> {
 /// A path over a load.
 #[derive(Serialize)]
 struct LoadReport<'a> {
-    along: Along<'a>,
     load: &'a str,
     start: f64,
     from_zero: bool,
     breakpoints: Vec<Turn<'a>>,
     limit: Option<f64>,
     last: Option<f64>,
-    end: &'a str,
 }
 
 #[derive(Serialize)]
@@ -286,20 +291,18 @@ struct Turn<'a> {
 }
 
 impl<'a> LoadReport<'a> {
-    fn of(path: &'a LoadPath, record: &'a PathRecord, along: &'a [OnPath]) -> Self {
+    fn of(path: &'a LoadPath) -> Self {
         let turn = |at: &'a Breakpoint| {
             let Breakpoint { value, changes, jump, sentence, .. } = at;
             Turn { factor: *value, changes, sentence, at_constant_load: *jump }
         };
         LoadReport {
-            along: Along::of(record, along),
             load: &path.parameter.name,
             start: path.start,
             from_zero: path.from_zero,
             breakpoints: path.breakpoints.iter().map(turn).collect(),
             limit: path.limit(),
             last: path.factors.last().copied(),
-            end: &record.end,
         }
     }
 }
