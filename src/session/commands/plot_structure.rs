@@ -101,36 +101,16 @@ impl Shape<'_> {
 }
 
 impl Session {
-    pub(super) fn plot_structure(
-        &self,
-        of: &[String],
-        height: Option<usize>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
-        let look = Look::read(of)?;
-        self.show_shape(&self.shape()?, &look, true, height, io)
-    }
-
-    /// The motion of the structure along the ray.
-    pub(super) fn plot_mode(
-        &self,
-        of: &[String],
-        height: Option<usize>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
-        let look = Look::read(of)?;
-        self.show_shape(&self.mode_shape()?, &look, false, height, io)
-    }
-
-    /// `loads`: whether they are drawn where the user does not say.
-    fn show_shape(
+    /// `plot structure` or `plot mode`: the words `of` say how, and `loads` whether loads are drawn where they do not.
+    pub(super) fn plot_shape(
         &self,
         shown: &Shape<'_>,
-        look: &Look,
+        of: &[String],
         loads: bool,
         height: Option<usize>,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
+        let look = Look::read(of)?;
         let loads = look.loads.unwrap_or(loads).then_some((&self.now.values, &self.now.scenario.units));
         io.show(shown, |out, style| {
             let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));

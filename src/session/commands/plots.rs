@@ -157,8 +157,8 @@ impl Session {
         let bar = of.first().map(String::as_str);
         let result = if let Some(word) = of.get(most) {
             Err(CommandError::Refused(format!(
-                "plot: `{word}` makes no sense here; a bar belongs to moment, shear, axial, Vz, T and My, pairs to path, `loads` and `scale` \
-                 to structure and mode"
+                "plot: `{word}` makes no sense here; a bar belongs to moment, shear, axial, Vz, T and My, pairs to path, \
+                 `loads` and `scale` to structure and mode"
             )))
         } else {
             match picture {
@@ -172,8 +172,8 @@ impl Session {
                 )),
                 Picture::P => self.plot_p(height, io),
                 Picture::Path => self.plot_path(of, height.unwrap_or(HEIGHT), io),
-                Picture::Structure => self.plot_structure(of, height, io),
-                Picture::Mode => self.plot_mode(of, height, io),
+                Picture::Structure => self.shape().and_then(|shape| self.plot_shape(&shape, of, true, height, io)),
+                Picture::Mode => self.mode_shape().and_then(|shape| self.plot_shape(&shape, of, false, height, io)),
                 Picture::Moment => self.plot_diagram(Internal::Moment, bar, height, io),
                 Picture::Shear => self.plot_diagram(Internal::Shear, bar, height, io),
                 Picture::Axial => self.plot_diagram(Internal::Axial, bar, height, io),
