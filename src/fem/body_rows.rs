@@ -11,7 +11,7 @@ use super::classes::Classes;
 use super::dof::Dofs;
 use super::error::{Holder, OverConstraint};
 use super::idle_spins::IdleSpin;
-use crate::model::structure::{Component, Structure};
+use crate::model::structure::Structure;
 use crate::model::vector::way;
 
 /// Σ a·u = 0 on the base dofs.
@@ -41,9 +41,7 @@ pub fn body_rows(structure: &Structure, dofs: &Dofs, spins: &[IdleSpin]) -> Vec<
     }
     for spin in spins {
         let Some(&node) = spin.nodes.first() else { continue };
-        let terms = Component::ROTATIONS.into_iter().map(|about| (dofs.of(node, about), spin.axis[about.axis()]));
-        let terms = terms.filter_map(|(dof, a)| Some((dof?, a))).filter(|(_, a)| *a != 0.0);
-        rows.push(BodyRow { body: None, terms: terms.collect() });
+        rows.push(BodyRow { body: None, terms: spin.turn(dofs, node) });
     }
     rows
 }

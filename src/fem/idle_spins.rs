@@ -3,6 +3,7 @@
 //!
 //! Such are bars between ball joints, divided or not, and rigid bodies of which only displacements are held.
 
+use super::dof::Dofs;
 use super::parts::{Parts, STRAIGHT};
 use crate::model::structure::{Component, Dimension, Structure};
 use crate::model::vector::{dot, unit, way};
@@ -16,6 +17,14 @@ pub struct IdleSpin {
     pub axis: [f64; 3],
     /// The nodes that turn with the part. Where there are none, there is no displacement to be held.
     pub nodes: Vec<usize>,
+}
+
+impl IdleSpin {
+    /// The rotation of a node about its axis, as a sum over base dofs.
+    pub fn turn(&self, dofs: &Dofs, node: usize) -> Vec<(usize, f64)> {
+        let terms = Component::ROTATIONS.into_iter().map(|about| (dofs.of(node, about), self.axis[about.axis()]));
+        terms.filter_map(|(dof, a)| Some((dof?, a))).filter(|(_, a)| *a != 0.0).collect()
+    }
 }
 
 /// The idle spins in the order of the parts.

@@ -9,7 +9,7 @@ use super::loads::{load_vectors, settlements};
 use super::repeated::Repeated;
 use super::superelement::refuse_indefinite;
 use crate::model::pair::Joint;
-use crate::model::structure::{Component, Structure};
+use crate::model::structure::Structure;
 use crate::watch::Watch;
 
 /// A torque below this share of the moments that it is the sum of is their rounding.
@@ -57,14 +57,8 @@ pub fn refuse_torques(
     spins: &[IdleSpin],
     f: &[Vec<f64>],
 ) -> Result<(), MainSystemError> {
-    let terms = |spin: &IdleSpin| -> Vec<(usize, f64)> {
-        let of = |&node: &usize| {
-            Component::ROTATIONS.into_iter().filter_map(move |c| Some((dofs.of(node, c)?, spin.axis[c.axis()])))
-        };
-        spin.nodes.iter().flat_map(of).collect()
-    };
     for spin in spins {
-        let terms = terms(spin);
+        let terms: Vec<(usize, f64)> = spin.nodes.iter().flat_map(|&node| spin.turn(dofs, node)).collect();
         for f in f {
             let (torque, size) = terms
                 .iter()
