@@ -1,5 +1,7 @@
 //! `plot traction`: what the pairs of an edge or of a face carry, per length or area of it.
 
+use std::collections::HashSet;
+
 use serde::Serialize;
 
 use super::plots::{HEIGHT, STRUCTURE_HEIGHT, borrowed};
@@ -14,6 +16,7 @@ use crate::view::plot::zone;
 /// Maps of the faces; states of the pairs that lie on edges, each with its title, and the length of edge of each of those
 /// pairs.
 pub(super) struct OnEdges {
+    figures: Vec<Tractions>,
     pub(super) maps: Vec<FaceMap>,
     pub(super) states: Vec<(String, Vec<PairState>)>,
     pub(super) lengths: Vec<f64>,
@@ -21,8 +24,8 @@ pub(super) struct OnEdges {
 
 /// Forces per length of edge, or per area of face.
 #[derive(Serialize)]
-struct Tractions<'a> {
-    at: &'a str,
+struct Tractions {
+    at: String,
     pairs: Vec<Traction>,
 }
 
@@ -52,17 +55,8 @@ impl Session {
         height: Option<usize>,
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
-        let OnEdges { maps, states, lengths } = self.traction_states(at)?;
-        let all = self.zone_states(at)?;
-        let sizes = self.structure().map(tributary_lengths).unwrap_or_default();
-        let on_edges = |id: &str| states.iter().flat_map(|(_, pairs)| pairs).any(|pair| pair.id == id);
-        let traction =
-            |(pair, size): (&PairState, &Option<f64>)| Some(Traction::of(pair, (*size)?, !on_edges(&pair.id)));
-        let shown: Vec<Tractions<'_>> = all
-            .iter()
-            .map(|(at, pairs)| Tractions { at, pairs: pairs.iter().zip(&sizes).filter_map(traction).collect() })
-            .collect();
-        io.show(&shown, |out, style| {
+        let OnEdges { figures, maps, states, lengths } = self.traction_states(at)?;
+        io.show(&figures, |out, style| {
             maps.iter().try_for_each(|map| map.write(out, height.unwrap_or(STRUCTURE_HEIGHT), style))?;
             if lengths.is_empty() {
                 return Ok(());
@@ -75,28 +69,33 @@ impl Session {
 
     /// The pairs on edges, as [`Session::zone_states`], and the length of edge of each of them.
     pub(super) fn traction_states(&self, at: &[String]) -> Result<OnEdges, CommandError> {
-        let mut states = self.zone_states(at)?;
-        let mut lengths = self.structure().map(tributary_lengths).unwrap_or_default();
+        let all = self.zone_states(at)?;
+        let mut states = all.clone();
+        let sizes = self.structure().map(tributary_lengths).unwrap_or_default();
         let mut maps = Vec::new();
-        let in_space = self.structure().filter(|structure| structure.dimension == Dimension::Space);
-        if let Some(structure) = in_space {
-            let ids: Vec<String> = structure.pairs.iter().map(|pair| pair.id.clone()).collect();
+        if let Some(structure) = self.structure().filter(|structure| structure.dimension == Dimension::Space) {
             for (label, pairs) in &mut states {
-                let (mut found, rest) = tractions(structure, pairs, &lengths, &self.now.scenario.units);
+                let (mut found, rest) = tractions(structure, pairs, &sizes, &self.now.scenario.units);
                 for map in found.iter_mut().filter(|_| !label.is_empty()) {
                     map.title.push_str(&format!(" · {label}"));
                 }
                 maps.extend(found);
                 *pairs = rest;
             }
-            let left: Vec<&str> = states.iter().flat_map(|(_, pairs)| pairs).map(|pair| pair.id.as_str()).collect();
-            lengths = ids.iter().zip(lengths).filter(|(id, _)| left.contains(&id.as_str())).map(|(_, at)| at).collect();
         }
-        for (_, pairs) in &mut states {
-            let kept = std::mem::take(pairs).into_iter().zip(&lengths).filter(|(_, length)| length.is_some());
-            *pairs = kept.map(|(pair, _)| pair).collect();
+        let on_no_face: HashSet<String> =
+            states.iter().flat_map(|(_, pairs)| pairs).map(|pair| pair.id.clone()).collect();
+        let sized = |pairs: &[PairState]| -> Vec<(PairState, f64)> {
+            pairs.iter().cloned().zip(&sizes).filter_map(|(pair, size)| Some((pair, (*size)?))).collect()
+        };
+        let (mut figures, mut lengths) = (Vec::new(), Vec::new());
+        for ((at, pairs), (_, on_edges)) in all.iter().zip(&mut states) {
+            let pairs = sized(pairs);
+            let is_area = |pair: &PairState| !on_no_face.contains(&pair.id);
+            let of = |(pair, size): &(PairState, f64)| Traction::of(pair, *size, is_area(pair));
+            figures.push(Tractions { at: at.clone(), pairs: pairs.iter().map(of).collect() });
+            (*on_edges, lengths) = pairs.into_iter().filter(|(pair, _)| !is_area(pair)).unzip();
         }
-        let lengths: Vec<f64> = lengths.into_iter().flatten().collect();
         if lengths.is_empty() && maps.is_empty() {
             return Err(CommandError::Refused(
                 "plot: no pairs lie on an edge with two ends, so that no length belongs to them; `plot pressure` and `plot \
@@ -104,6 +103,6 @@ impl Session {
                     .into(),
             ));
         }
-        Ok(OnEdges { maps, states, lengths })
+        Ok(OnEdges { figures, maps, states, lengths })
     }
 }

@@ -1,6 +1,7 @@
 //! Slip, friction force, opening and pressure over a face of contact, whose pairs lie on a plane and not on a line: a map of
 //! cells, each as its nearest pair.
 
+use std::collections::HashSet;
 use std::io::{self, Write};
 
 use super::lines::straight_order;
@@ -99,7 +100,8 @@ pub fn tractions(
         map.title = format!("{}, per area", map.title);
         map.unit = area_load_unit(units);
     }
-    let is_left = |state: &&PairState| rest.iter().any(|rest| rest.id == state.id);
+    let left: HashSet<&str> = rest.iter().map(|state| state.id.as_str()).collect();
+    let is_left = |state: &&PairState| left.contains(state.id.as_str());
     (maps, states.iter().filter(is_left).cloned().collect())
 }
 

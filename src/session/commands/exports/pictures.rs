@@ -55,7 +55,7 @@ impl Session {
             Exported::Gap => zone(Quantity::Gap),
             Exported::Pressure => zone(Quantity::Pressure),
             Exported::Traction => {
-                let OnEdges { maps, states, lengths } = self.traction_states(of)?;
+                let OnEdges { maps, states, lengths, .. } = self.traction_states(of)?;
                 let chart = (!lengths.is_empty()).then(|| zone::traction(&borrowed(&states), &lengths, units));
                 Ok(match chart {
                     Some(chart) if maps.is_empty() => self.chart_figure(&chart, ""),
