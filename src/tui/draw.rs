@@ -173,7 +173,10 @@ fn draw_pane(state: &State, places: &Places, pane: Pane, area: Rect, shares: boo
     let explains = state.explains && state.tour.is_none();
     let mut below = if explains {
         let plain = matches!(state.shown.scenario.source, crate::model::scenario::Source::Lcp(_));
-        pane.explanation(plain).to_owned()
+        match pane {
+            Pane::Pivots if state.shown.stage.is_some() => "what happens on the way".to_owned(),
+            _ => pane.explanation(plain).to_owned(),
+        }
     } else {
         String::new()
     };

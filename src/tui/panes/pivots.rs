@@ -91,7 +91,7 @@ fn events(state: &State, width: usize) -> Vec<Line<'static>> {
     let moments = stage.into_iter().flat_map(|stage| &stage.moments).filter(|moment| !moment.sentence.is_empty());
     let mut lines = vec![Line::styled("done    events of the stage", look.role(Role::Header))];
     for moment in moments {
-        let label = pad_right(&short(moment.t), 8);
+        let label = format!("{}  ", pad_right(&short(moment.t), 6));
         lines.extend(look.report(width).hanging(&label, &look.text(&moment.sentence)).into_iter().map(Line::raw));
     }
     if lines.len() == 1 {
@@ -118,8 +118,15 @@ impl Columns {
     fn of(pivots: &[PivotRecord], (p, numbers): (&str, &[String]), width: usize) -> Columns {
         let step = pivots.last().map_or(1, |pivot| pivot.step.to_string().len());
         let number = numbers.iter().map(String::len).max().unwrap_or(1).max(3).max(p.width());
-        let tie = if pivots.iter().any(|pivot| pivot.ties.len() > 1) { 7 } else { 0 };
-        let fixed = step + 2 + 1 + number + tie;
+        let longest_turn = pivots.iter().filter_map(|pivot| pivot.turned.as_ref());
+        let longest_turn = longest_turn.map(|turned| turned.pair.width() + 1 + turned.to.width()).max().unwrap_or(0);
+        let bare = step + 2 + 1 + number;
+        let tie = match pivots.iter().any(|pivot| pivot.ties.len() > 1) {
+            false => 0,
+            true if bare + longest_turn + 7 > width => 5,
+            true => 7,
+        };
+        let fixed = bare + tie;
         let longest = pivots.iter().map(|pivot| pivot.leaving.width()).max().unwrap_or(0);
         let until = if width >= fixed + 24 + longest { longest.max(5) + 3 } else { 0 };
         Columns { step, words: width.saturating_sub(fixed + until).clamp(6, 30), number, until, tie }
@@ -141,7 +148,7 @@ fn listing(state: &State, solved: &Arc<Solved>, width: u16) -> Rc<Listing> {
             pad_right(" turned", columns.words + 1),
             pad_left(&p, columns.number),
             if columns.until > 0 { pad_right("   until", columns.until) } else { String::new() },
-            if columns.tie > 0 { "   ties" } else { "" }
+            if columns.tie > 0 { pad_left("ties", columns.tie) } else { String::new() }
         );
         let rows = pivots.iter().zip(&numbers).map(|(pivot, p)| row(pivot, p, &columns, look));
         Listing::new(vec![Line::styled(heading, look.role(Role::Header))], rows.collect())

@@ -67,6 +67,23 @@ fn combinations_and_stages_are_shown_one_by_one() {
     assert!(rig.screen().contains("neither"), "{}", rig.screen());
 }
 
+/// Events of a stage stand apart from when they happen, however long that number is.
+#[test]
+fn events_of_a_stage_stand_beside_their_times() {
+    let text = embedded::text("bearing-two-way").unwrap();
+    let stages = r#", "stages": [{ "weight": 1, "pull-x": 1 }, { "weight": 1, "pull-x": 1, "pull-y": 1 }] }"#;
+    let text = text.trim_end().strip_suffix('}').unwrap().trim_end().to_owned() + stages;
+    let scenario =
+        crate::model::load::load_text("stages.json", &text, None).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut rig = Rig::of(scenario, 80, 24);
+    rig.command("stages");
+    rig.press(&["esc"]);
+    let screen = rig.screen();
+    let events = screen.lines().filter(|line| line.contains("pair slider "));
+    assert!(events.clone().count() > 0 && events.clone().all(|line| line.contains("  pair slider ")), "{screen}");
+    assert!(screen.contains("what happens on the way"), "{screen}");
+}
+
 #[test]
 fn quantities_follow_the_sliders() {
     let mut rig = block(80, 24);
