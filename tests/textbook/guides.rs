@@ -17,6 +17,8 @@ use crate::common::*;
 pub const EA: f64 = 500.0;
 pub const EI: f64 = 1000.0;
 pub const L: f64 = 10.0;
+/// g₁ and g₂ of the scenarios.
+pub const CLEARANCES: [f64; 2] = [0.01, 0.02];
 
 /// A cantilever turned by some angle with a guide at its tip.
 pub fn guide(angle: f64) -> Case {
@@ -38,12 +40,32 @@ pub fn guide(angle: f64) -> Case {
     }))
 }
 
-/// With clearances: the tip moves by P/k until a side closes; that side carries P − k g, and holds an axial force up to
-/// f times that; the rest stretches the bar.
+/// The answer of a guide whose sides have the clearances g₁ and g₂, under P towards the first and an axial T.
+pub struct Guided {
+    /// What the sides carry.
+    pub x: [f64; 2],
+    /// How far each is open.
+    pub gaps: [f64; 2],
+    /// Slip of the tip along the axis.
+    pub slip: f64,
+    /// Friction of both sides on the tip, along the axis.
+    pub friction: f64,
+}
+
+/// The tip moves by P/k until a side closes; that side carries P − k g, and holds an axial force up to f times that; the
+/// rest stretches the bar (k = 3EI/L³, k_a = EA/L).
+pub fn with_clearances(p: f64, t: f64, [g1, g2]: [f64; 2], f: f64) -> Guided {
+    let (k, k_a) = (3.0 * EI / L.powi(3), EA / L);
+    let x = [f64::max(p - k * g1, 0.0), f64::max(-p - k * g2, 0.0)];
+    let down = (p / k).clamp(-g2, g1);
+    let held = f * (x[0] + x[1]);
+    let slip = (t.abs() - held).max(0.0) * t.signum() / k_a;
+    Guided { x, gaps: [g1 - down, g2 + down], slip, friction: -t.signum() * t.abs().min(held) }
+}
+
+/// See [`with_clearances`].
 #[test]
 fn guide_with_clearances() {
-    let (k, k_a) = (3.0 * EI / L.powi(3), EA / L);
-    let (g1, g2, f) = (0.01, 0.02, 0.3);
     for angle in [0.0, 0.5, 2.2, -1.1] {
         let case = guide(angle);
         for (p, t) in
@@ -52,20 +74,16 @@ fn guide_with_clearances() {
             let answer = case.solve(&[("P", p), ("T", t)]);
             is_answer(&answer);
             let [low, up] = &answer.pairs[..] else { panic!() };
-            let (x_low, x_up) = (f64::max(p - k * g1, 0.0), f64::max(-p - k * g2, 0.0));
-            let down = (p / k).clamp(-g2, g1);
-            let held = f * (x_low + x_up);
-            let slip = (t.abs() - held).max(0.0) * t.signum() / k_a;
+            let right = with_clearances(p, t, CLEARANCES, 0.3);
             let what = format!("P = {p}, T = {t}, angle {angle}");
-            near(&what, low.x_n, x_low, 1e-12, 1.0);
-            near(&what, up.x_n, x_up, 1e-12, 1.0);
-            near(&what, low.z_n, g1 - down, 1e-12, g1);
-            near(&what, up.z_n, g2 + down, 1e-12, g2);
-            near(&what, low.z_t, slip, 1e-12, 0.01);
-            near(&what, up.z_t, -slip, 1e-12, 0.01);
-            // Friction against the motion: −T or −f x along t, which is opposite on the two sides.
-            let friction = t.signum() * t.abs().min(held);
-            near(&what, low.x_t - up.x_t, -friction, 1e-12, 1.0);
+            near(&what, low.x_n, right.x[0], 1e-12, 1.0);
+            near(&what, up.x_n, right.x[1], 1e-12, 1.0);
+            near(&what, low.z_n, right.gaps[0], 1e-12, CLEARANCES[0]);
+            near(&what, up.z_n, right.gaps[1], 1e-12, CLEARANCES[1]);
+            near(&what, low.z_t, right.slip, 1e-12, 0.01);
+            near(&what, up.z_t, -right.slip, 1e-12, 0.01);
+            // t is opposite on the two sides
+            near(&what, low.x_t - up.x_t, right.friction, 1e-12, 1.0);
         }
     }
 }

@@ -10,11 +10,8 @@ use nalgebra::{Rotation3, Vector3};
 use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, OutcomeKind, RayClass, State, Verdict};
 
+use super::guides::{CLEARANCES, EA, EI, L, with_clearances};
 use crate::common::*;
-
-const EA: f64 = 500.0;
-const EI: f64 = 1000.0;
-const L: f64 = 10.0;
 
 fn vector(rotation: &Rotation3<f64>, x: f64, y: f64, z: f64) -> Value {
     json!((rotation * Vector3::new(x, y, z)).as_slice())
@@ -55,30 +52,24 @@ fn turned() -> Vec<Rotation3<f64>> {
     vec![Rotation3::identity(), turn(0.3, -0.7, 1.1), turn(-1.9, 0.2, 0.4)]
 }
 
-/// With clearances: the tip moves by P/k until a side closes; that side carries P − k g, and holds an axial force up to f
-/// times that; the rest stretches the bar (k = 3EI/L³, k_a = EA/L).
+/// See [`with_clearances`].
 #[test]
 fn guide_with_clearances_in_space() {
-    let (k, k_a) = (3.0 * EI / L.powi(3), EA / L);
-    let (g1, g2, f) = (0.01, 0.02, 0.3);
     for rotation in turned() {
         let case = guided(&rotation, &SIDES);
         for (p, t) in [(1.0, 0.0), (1.0, 0.2), (1.0, 0.5), (1.0, -0.5), (-1.0, 0.7), (0.02, 0.3), (0.0, -0.3)] {
             let answer = case.solve(&[("P", p), ("T", t)]);
             is_answer(&answer);
             let [low, up] = &answer.pairs[..] else { panic!() };
-            let (x_low, x_up) = (f64::max(p - k * g1, 0.0), f64::max(-p - k * g2, 0.0));
-            let down = (p / k).clamp(-g2, g1);
-            let held = f * (x_low + x_up);
-            let slip = (t.abs() - held).max(0.0) * t.signum() / k_a;
+            let right = with_clearances(p, t, CLEARANCES, 0.3);
             let what = format!("P = {p}, T = {t}, {rotation}");
-            near(&what, low.x_n, x_low, 1e-9, 1.0);
-            near(&what, up.x_n, x_up, 1e-9, 1.0);
-            near(&what, low.z_n, g1 - down, 1e-9, g1);
-            near(&what, up.z_n, g2 + down, 1e-9, g2);
-            near_all(&what, &low.slip(), &[slip, 0.0], 1e-9);
-            near_all(&what, &up.slip(), &[slip, 0.0], 1e-9);
-            near(&what, low.friction()[0] + up.friction()[0], -t.signum() * t.abs().min(held), 1e-9, 1.0);
+            near(&what, low.x_n, right.x[0], 1e-9, 1.0);
+            near(&what, up.x_n, right.x[1], 1e-9, 1.0);
+            near(&what, low.z_n, right.gaps[0], 1e-9, CLEARANCES[0]);
+            near(&what, up.z_n, right.gaps[1], 1e-9, CLEARANCES[1]);
+            near_all(&what, &low.slip(), &[right.slip, 0.0], 1e-9);
+            near_all(&what, &up.slip(), &[right.slip, 0.0], 1e-9);
+            near(&what, low.friction()[0] + up.friction()[0], right.friction, 1e-9, 1.0);
         }
     }
 }

@@ -252,17 +252,7 @@ fn embedded_structures_are_exported() {
 /// the curve over the post.
 #[test]
 fn figures_show_faces_and_the_pairs_beside_them() {
-    let text = r#"{ "format": "stickslip/1", "title": "block and post", "dimension": 3,
-      "materials": { "m": { "E": 1e5, "nu": 0.2, "density": 1 } },
-      "nodes": { "post": [3, 0, 0] },
-      "springs": [ { "at": "post", "direction": [1, 0, 0], "stiffness": 10 },
-                   { "at": "post", "direction": [0, 1, 0], "stiffness": 10 } ],
-      "bricks": [ { "id": "block", "origin": [0, 0, 0], "size": [1, 1, 1], "divisions": [1, 1, 1], "material": "m" } ],
-      "contacts": [ { "id": "base", "face": "block.bottom", "against": "ground", "friction": 0.5 },
-                    { "id": "foot", "node": "post", "against": "ground", "normal": [0, 0, 1], "friction": 0.1 } ],
-      "loads": { "weight": { "items": [ { "gravity": { "acceleration": [0, 0, -1] } },
-                                        { "point": { "at": "post", "force": [3, 0, -10] } } ] } } }"#;
-    let mut session = lines::read(text);
+    let mut session = lines::read(include_str!("../common/block-and-post.json"));
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("slip.svg");
     run(&mut session, &format!("export slip {}", file.display())).expect("written");

@@ -298,11 +298,18 @@ fn contact_systems_are_looked_at_too() {
 /// In space everything has a third extent: a column is as large as it is high, and boxes weigh what plates weigh.
 #[test]
 fn in_space_heights_and_bricks_count() {
-    let column = json!({
+    let empty = json!({
         "format": "stickslip/1",
-        "title": "column",
+        "title": "in space",
         "dimension": 3,
-        "units": { "length": "m", "force": "kN" },
+        "units": { "length": "m", "force": "kN" }
+    });
+    let scenario = |parts: Value| {
+        let mut scenario = empty.clone();
+        scenario.as_object_mut().unwrap().extend(parts.as_object().unwrap().clone());
+        scenario
+    };
+    let column = scenario(json!({
         "materials": { "steel": { "E": 2.1e8, "nu": 0.3, "density": 7.85 } },
         "sections": { "HEA400": { "area": 0.0159, "inertia_y": 4.507e-4, "inertia_z": 8.564e-5, "torsion": 1.89e-6 } },
         "nodes": { "A": [0, 0, 0], "B": [0, 0, 6] },
@@ -310,18 +317,14 @@ fn in_space_heights_and_bricks_count() {
         "supports": [{ "at": "A", "fixed": ["x", "y", "z", "rx", "ry", "rz"] }],
         "contacts": [{ "id": "stop", "node": "B", "against": "ground", "normal": [1, 0, 0], "friction": 0.3 }],
         "loads": { "push": { "items": [{ "point": { "at": "B", "force": [-10, 0, 0] } }] } }
-    });
+    }));
     none(&column);
-    let block = json!({
-        "format": "stickslip/1",
-        "title": "block",
-        "dimension": 3,
-        "units": { "length": "m", "force": "kN" },
+    let block = scenario(json!({
         "materials": { "concrete": { "E": 3e7, "nu": 0.2, "density": 24 } },
         "bricks": [{ "id": "block", "origin": [0, 0, 0], "size": [2, 1, 1], "divisions": [2, 1, 1], "material": "concrete" }],
         "contacts": [{ "id": "base", "face": "block.bottom", "against": "ground", "friction": 0.5 }],
         "loads": { "weight": { "items": [{ "gravity": { "acceleration": [0, 0, -1], "on": ["block"] } }] } }
-    });
+    }));
     none(&block);
     let weightless = with(block, &[("/materials/concrete/density", Value::Null)]);
     let found = warnings(&weightless);

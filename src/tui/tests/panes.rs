@@ -72,16 +72,7 @@ fn the_plane_is_not_turned() {
 /// A block on its face beside a post on a node: the map of the face, and below it the curve over the post.
 #[test]
 fn plots_show_faces_and_the_pairs_beside_them() {
-    let text = r#"{ "format": "stickslip/1", "title": "block and post", "dimension": 3,
-      "materials": { "m": { "E": 1e5, "nu": 0.2, "density": 1 } },
-      "nodes": { "post": [3, 0, 0] },
-      "springs": [ { "at": "post", "direction": [1, 0, 0], "stiffness": 10 },
-                   { "at": "post", "direction": [0, 1, 0], "stiffness": 10 } ],
-      "bricks": [ { "id": "block", "origin": [0, 0, 0], "size": [1, 1, 1], "divisions": [1, 1, 1], "material": "m" } ],
-      "contacts": [ { "id": "base", "face": "block.bottom", "against": "ground", "friction": 0.5 },
-                    { "id": "foot", "node": "post", "against": "ground", "normal": [0, 0, 1], "friction": 0.1 } ],
-      "loads": { "weight": { "items": [ { "gravity": { "acceleration": [0, 0, -1] } },
-                                        { "point": { "at": "post", "force": [3, 0, -10] } } ] } } }"#;
+    let text = include_str!("../../../tests/common/block-and-post.json");
     let scenario =
         crate::model::load::load_text("both.json", text, None).unwrap_or_else(|problems| panic!("{problems}"));
     for (width, height) in [(80, 24), (140, 45)] {
