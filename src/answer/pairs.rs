@@ -145,11 +145,9 @@ impl JointState {
         (unknowns, responses)
     }
 
-    /// z_τ of a pair, along t or along t1 and t2; 0 where it has no tangential joint.
+    /// z_τ of a pair: see [`ContactPair::slip`].
     pub fn slip(&self, pair: &ContactPair) -> [f64; 2] {
-        let mut slip = [0.0; 2];
-        slip.iter_mut().zip(pair.tangential.clone()).for_each(|(slip, joint)| *slip = self.z[joint]);
-        slip
+        pair.slip(&self.z)
     }
 
     /// λ of a joint with the magnitudes of its terms.

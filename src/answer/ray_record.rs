@@ -94,8 +94,8 @@ impl PairDirection {
     /// z̄ over the joints of a pair in a direction.
     pub fn of(system: &ContactSystem, pair: usize, direction: &DVector<f64>) -> PairDirection {
         let of = &system.pairs[pair];
-        let at = |t: usize| of.tangential.clone().nth(t).map_or(0.0, |joint| direction[joint]);
-        let z_t = if system.is_in_space() { Slip::Space([at(0), at(1)]) } else { Slip::Plane(at(0)) };
+        let slip = of.slip(direction);
+        let z_t = if system.is_in_space() { Slip::Space(slip) } else { Slip::Plane(slip[0]) };
         PairDirection { pair: of.id.clone(), z_n: direction[pair], z_t }
     }
 

@@ -43,6 +43,13 @@ impl ContactPair {
         self.tangential.len() == 2
     }
 
+    /// z_τ where z is this over the joints, along t or along t1 and t2; 0 where it has no tangential joint.
+    pub fn slip(&self, z: &DVector<f64>) -> [f64; 2] {
+        let mut slip = [0.0; 2];
+        slip.iter_mut().zip(self.tangential.clone()).for_each(|(slip, joint)| *slip = z[joint]);
+        slip
+    }
+
     /// The tangential joint of a pair in the plane: for what [`ContactSystem::space_refusal`] keeps out of space.
     pub fn plane_tangential(&self) -> Option<usize> {
         debug_assert!(!self.is_in_space(), "pair {} has two tangential joints", self.id);

@@ -179,9 +179,7 @@ impl Prepared {
                         let is_loose = scheme == PairScheme::OPEN;
                         is_loose || scheme.tangential.facets(polygon).contains(&facet)
                     });
-                    let joints = system.pairs[row.pair].tangential.clone();
-                    let mut slip = [0.0; 2];
-                    slip.iter_mut().zip(joints).for_each(|(slip, joint)| *slip = candidate.state.z[joint]);
+                    let slip = system.pairs[row.pair].slip(&candidate.state.z);
                     if free { polygon.slips(slip)[facet] } else { 0.0 }
                 }
             } / contact.length_unit;

@@ -68,8 +68,8 @@ impl Prepared {
         }
         let certified = match solved.ray.as_mut() {
             Some(report) => certify_ray(report, &problem, self.built()),
-            // An answer on the polygon that Newton's method did not take to the cone.
-            // Joints that press on and on end in a failed check.
+            // An answer on the polygon that Newton's method did not take to the cone, or joints that press on and on, which
+            // end in a failed check.
             None => {
                 (solved.answer.is_answer() || system.yielding.is_some())
                     && self.collapses_on_cone(&mut solved, &problem, rules.covering)

@@ -330,7 +330,7 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
                 (shown.x_t, shown.reserve_plus, shown.reserve_minus) = (shown.bound, 2.0 * shown.bound, 0.0);
             }
             if let Some(space) = shown.space.as_mut().filter(|_| pair.rubs()) {
-                space.z_t.iter_mut().zip(pair.tangential.clone()).for_each(|(slip, joint)| *slip = self.z[joint]);
+                space.z_t = pair.slip(&self.z);
                 shown.z_t = space.z_t[0].hypot(space.z_t[1]);
             }
         }
