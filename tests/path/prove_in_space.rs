@@ -193,3 +193,13 @@ fn what_the_commands_prove_of_the_scenarios_in_space() {
         assert!(words.starts_with(begins), "{scenario}: {words}");
     }
 }
+
+/// One is not many.
+#[test]
+fn what_is_proved_of_a_single_pair() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = session(embedded::load("bearing-two-way").unwrap());
+    let (said, _) = proved(&mut session, "", folder.path()).unwrap();
+    let sentence = said["sentence"].as_str().unwrap();
+    assert!(sentence.contains(" signs of 1 pair in rationals."), "{sentence}");
+}

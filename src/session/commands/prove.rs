@@ -6,6 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::export::{atomic, proof as proof_export};
+use crate::model::words::counted;
 use crate::session::error::refused;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
@@ -14,6 +15,7 @@ use crate::solve::prove::system::ProvedSystem;
 use crate::solve::prove::{Claim, Proof};
 use crate::text::printable;
 use crate::text::words::short;
+use crate::view::style::Role;
 
 /// Write the proof of what stands, for a short independent script to check
 ///
@@ -104,8 +106,8 @@ impl Session {
         let named = |path: &Path| path.display().to_string();
         let report =
             ProofReport { claim, sentence: sentence(&proof), answers, file: named(path), system: named(&beside) };
-        io.show(&report, |out, _| {
-            writeln!(out, "{}", report.sentence)?;
+        io.show(&report, |out, style| {
+            style.paragraph(out, Role::Plain, &report.sentence)?;
             writeln!(
                 out,
                 "wrote {} and {}: `python3 check_proof.py {}` checks it",
@@ -155,14 +157,14 @@ fn sentence(proof: &Proof) -> String {
 }
 
 fn claimed(proof: &Proof) -> String {
-    let pairs = proof.forms.groups.len();
-    let unit = match &proof.system {
-        ProvedSystem::Contact(_) => "pairs",
-        ProvedSystem::Plain { .. } => "rows",
+    let [one, many] = match &proof.system {
+        ProvedSystem::Contact(_) => ["pair", "pairs"],
+        ProvedSystem::Plain { .. } => ["row", "rows"],
     };
+    let units = counted(proof.forms.groups.len(), one, many);
     match &proof.claim {
         Claim::Answer(_) => {
-            format!("Proved: the answer, {} signs of {pairs} {unit} in rationals.", proof.forms.names.len())
+            format!("Proved: the answer, {} signs of {units} in rationals.", proof.forms.names.len())
         }
         Claim::Collapse(found) => {
             let number = |value| short(crate::lcp::exact::dyadic::nearest(value));
@@ -182,7 +184,7 @@ fn claimed(proof: &Proof) -> String {
                     "every answer is one of {count} or lies in one of {sets} sets, each all that a branch leaves, with some of these in it"
                 ),
             };
-            format!("Proved: {count}; {} branches.", all.nodes)
+            format!("Proved: {count}; {}.", counted(all.nodes, "branch", "branches"))
         }
     }
 }
