@@ -6,7 +6,6 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::file_data::FileData;
-use super::yielding::Yielding;
 
 use crate::lcp::problem::NOISE;
 use crate::model::pair::Law;
@@ -82,6 +81,17 @@ pub struct ForceForm {
     pub joints: Vec<bool>,
     /// Basis of the self-stress: joint forces that nothing feels, k × s.
     pub self_stress: DMatrix<f64>,
+}
+
+/// What a yielding system was made from (see [`super::yielding`]).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Yielding {
+    /// The system as it is, its repeated joints in force form.
+    pub exact: Arc<ContactSystem>,
+    /// T: the joints that yield, those that are repeated and those that repeat them.
+    pub joints: Vec<usize>,
+    /// ε, a displacement per force.
+    pub compliance: f64,
 }
 
 /// λ = R z + Σ factor·RF over the joints: m normals, then the tangentials of the pairs that have one.

@@ -21,24 +21,13 @@ use super::pivoted::orthonormal;
 use super::problem::ContactProblem;
 use super::sum::Sum;
 use super::sums::joint_forces;
-use super::system::{ContactSystem, JointLoad};
+use super::system::{ContactSystem, JointLoad, Yielding};
 use super::written::power_of_two;
 
 /// ε times the largest R_ii: forces lose some 1e5 of the digits of R, and each multiplier gains as much.
 const COMPLIANCE: f64 = 1.0 / 131_072.0;
 /// A self-stress below this share of the largest belongs to no joint.
 const FELT: f64 = 1e-9;
-
-/// What a yielding system was made from.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Yielding {
-    /// The system as it is, its repeated joints in force form.
-    pub exact: Arc<ContactSystem>,
-    /// T: the joints that yield, those that are repeated and those that repeat them.
-    pub joints: Vec<usize>,
-    /// ε, a displacement per force.
-    pub compliance: f64,
-}
 
 /// The yielding system of one whose repeated joints stand in force form.
 pub fn yielding(exact: ContactSystem) -> ContactSystem {

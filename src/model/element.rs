@@ -2,9 +2,8 @@
 //!
 //! How they carry force is told by [`crate::fem`], in one file for each kind.
 
-use super::faces::corners;
 use super::node::Component;
-use super::shape::Shape;
+use super::shape::{Shape, side_corners};
 use super::space_section::{EndJoint, SpaceSection};
 
 /// Linear elastic material.
@@ -209,7 +208,8 @@ impl Element {
         let is_solid = self.shape().is_solid();
         let sides = self.sides().filter(move |_| !is_solid).map(move |ends| border(&ends));
         let faces = self.shape().faces().into_iter().map(move |places| {
-            let nodes: Vec<usize> = places[..corners(places.len())].iter().map(|&place| self.nodes[place]).collect();
+            let nodes: Vec<usize> =
+                places[..side_corners(places.len())].iter().map(|&place| self.nodes[place]).collect();
             border(&nodes)
         });
         sides.chain(faces)

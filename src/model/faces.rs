@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::face::FaceSide;
-use super::shape::Shape;
+use super::shape::{Shape, side_corners};
 
 /// Sides of solids by their corner nodes.
 #[derive(Default)]
@@ -11,13 +11,8 @@ pub struct Faces {
     by_corners: HashMap<Box<[usize]>, Vec<FaceSide>>,
 }
 
-/// The number of corners among the nodes of a side: 3 of 3 or 6, 4 of 4 or 8.
-pub fn corners(nodes: usize) -> usize {
-    if nodes.is_multiple_of(3) { 3 } else { 4 }
-}
-
 fn key(nodes: &[usize]) -> Box<[usize]> {
-    let mut key: Box<[usize]> = nodes[..corners(nodes.len())].into();
+    let mut key: Box<[usize]> = nodes[..side_corners(nodes.len())].into();
     key.sort_unstable();
     key
 }

@@ -312,6 +312,11 @@ fn cuts(a: Point, b: Point, c: Point, d: Point) -> bool {
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
+/// The number of corners among the nodes of a side of a solid: 3 of 3 or 6, 4 of 4 or 8.
+pub fn side_corners(nodes: usize) -> usize {
+    if nodes.is_multiple_of(3) { 3 } else { 4 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,6 +4,7 @@
 //! open, not on the slips committed before: where both come back after a cycle, every further cycle is the same.
 
 use super::exact_cycle::{self, Repetition};
+use super::load_parameter::factors_at;
 use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until};
 use super::start::{PathError, plane_system};
 use super::static_shakedown::{Static, static_limit, static_shakedown};
@@ -12,8 +13,7 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
 use crate::solve::case::Case;
-use crate::solve::error::QuestionError;
-use crate::solve::problem::{contact_problem, factors};
+use crate::solve::problem::contact_problem;
 use crate::text::number::short;
 
 /// Two states are one where they differ by less than this share of the largest of their kind.
@@ -129,24 +129,6 @@ impl Cycle {
     }
 }
 
-/// The factors of all load cases at a value of a case or parameter.
-pub(super) fn target(case: Case<'_>, name: &str, value: f64) -> Result<Vec<f64>, PathError> {
-    let Case { scenario, prepared, values, watch, .. } = case;
-    let there = case.at(name, value)?;
-    let found = factors(&there.prepared, &there.values);
-    if prepared.cases.iter().any(|(known, _)| known == name) {
-        return Ok(found);
-    }
-    let why = |what: &str| PathError::Mixed { name: name.to_owned(), why: what.to_owned() };
-    if prepared.renewed(scenario, &there.values, watch).map_err(QuestionError::from)?.is_some() {
-        return Err(why("it moves more than the factors of load cases; put it into the factor of one"));
-    }
-    if factors(prepared, values) == found && values.get(name).is_some_and(|now| *now != value) {
-        return Err(why("no factor of a load case depends on it"));
-    }
-    Ok(found)
-}
-
 /// Refuses slips whose forces would leave no digits of those of the loads.
 fn within_reason(problem: &ContactProblem, slips: &[f64]) -> Result<(), PathError> {
     let (system, loads) = (&problem.system, problem.load_terms.amax());
@@ -240,7 +222,7 @@ fn repetition(case: Case<'_>, found: &Cycle) -> Result<Repetition, PathError> {
         return Ok(Repetition::Unproved(why.to_owned()));
     }
     let at = |end: f64| -> Result<ContactProblem, PathError> {
-        Ok(contact_problem(system, &target(case, &found.name, end)?, case.values).without_load_noise())
+        Ok(contact_problem(system, &factors_at(case, &found.name, end)?, case.values).without_load_noise())
     };
     let problems = [at(found.ends[0])?, at(found.ends[1])?];
     Ok(exact_cycle::prove(&problems, before, [there, back], case.watch))
@@ -257,7 +239,7 @@ pub(super) fn followed(
     let system = case.prepared.system().ok_or(PathError::Plain("cycle"))?;
     let [a, b] = ends;
     let (softest, same) = (softest(system), if system.is_in_space() { SAME_IN_SPACE } else { SAME });
-    let (start, turned) = (target(case, name, a)?, target(case, name, b)?);
+    let (start, turned) = (factors_at(case, name, a)?, factors_at(case, name, b)?);
     if let Begin::Slips(slips) = begin {
         plane_system(case.prepared, "cycle … from", INSTEAD_OF_SLIPS)?;
         within_reason(&contact_problem(system, &start, case.values), slips)?;

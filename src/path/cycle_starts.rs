@@ -9,7 +9,8 @@
 
 use nalgebra::DVector;
 
-use super::cycle::{Cycle, INSTEAD_OF_SLIPS, Kind, PairSlip, Turn, cycle, followed, target};
+use super::cycle::{Cycle, INSTEAD_OF_SLIPS, Kind, PairSlip, Turn, cycle, followed};
+use super::load_parameter::factors_at;
 use super::stages::{Begin, loose_motions};
 use super::start::{PathError, plane_system};
 use super::static_shakedown::{SECONDS, Static, units};
@@ -99,7 +100,7 @@ pub fn from_all(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Resu
     let zero = cycle(case, name, ends, most, &Begin::Slips(vec![0.0; count]))?;
     let first = &zero.history.stages[0].end.pairs;
     let open: Vec<bool> = first.iter().map(|pair| pair.z_n > 0.0).collect();
-    let problem = contact_problem(system, &target(case, name, ends[0])?, case.values);
+    let problem = contact_problem(system, &factors_at(case, name, ends[0])?, case.values);
     let mut begins = extreme_slips(&problem, &open, case)?;
     begins.dedup_by(|a, b| close(&a.1, &b.1));
     let mut starts = vec![StartResult::of("no slips".to_owned(), &zero)];

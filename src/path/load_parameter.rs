@@ -10,7 +10,9 @@ use crate::contact::system::ContactSystem;
 use crate::model::jet::Dependence;
 use crate::model::scenario::Scenario;
 use crate::model::uses::Region;
+use crate::solve::error::QuestionError;
 use crate::solve::load_rates::LoadRates;
+use crate::solve::problem::factors;
 use crate::solve::{Case, PrepareError, Prepared};
 
 /// What a load path varies: the factor of a case, or a parameter in which the factors of some cases are affine.
@@ -157,4 +159,22 @@ pub fn known(prepared: &Prepared, scenario: &Scenario) -> String {
         text.push_str(&format!("; parameters {}", parameters.join(", ")));
     }
     text
+}
+
+/// The factors of all load cases at a value of a case or parameter.
+pub(super) fn factors_at(case: Case<'_>, name: &str, value: f64) -> Result<Vec<f64>, PathError> {
+    let Case { scenario, prepared, values, watch, .. } = case;
+    let there = case.at(name, value)?;
+    let found = factors(&there.prepared, &there.values);
+    if prepared.cases.iter().any(|(known, _)| known == name) {
+        return Ok(found);
+    }
+    let why = |what: &str| PathError::Mixed { name: name.to_owned(), why: what.to_owned() };
+    if prepared.renewed(scenario, &there.values, watch).map_err(QuestionError::from)?.is_some() {
+        return Err(why("it moves more than the factors of load cases; put it into the factor of one"));
+    }
+    if factors(prepared, values) == found && values.get(name).is_some_and(|now| *now != value) {
+        return Err(why("no factor of a load case depends on it"));
+    }
+    Ok(found)
 }

@@ -14,7 +14,6 @@ pub mod friction;
 mod friction_zero;
 pub mod grid;
 pub mod limit;
-mod limit_by_runs;
 pub mod load;
 pub mod load_parameter;
 pub mod map;

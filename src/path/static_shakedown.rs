@@ -7,7 +7,7 @@
 
 use nalgebra::DVector;
 
-use super::cycle::target;
+use super::load_parameter::factors_at;
 use super::stages::{Begin, Moment, follow_factors};
 use super::start::PathError;
 use crate::contact::problem::ContactProblem;
@@ -202,7 +202,7 @@ pub fn static_limit(case: Case<'_>, name: &str, [from, to]: [f64; 2]) -> Result<
     if let Some(refusal) = refusal(&problem) {
         return Ok((None, refusal));
     }
-    let targets = [target(case, name, from)?, target(case, name, to)?];
+    let targets = [factors_at(case, name, from)?, factors_at(case, name, to)?];
     let history = follow_factors(case, &Begin::Unloaded, &targets)?;
     let Some(stage) = history.stages.get(1) else { return Ok((None, Static::Nothing)) };
     let places: Vec<Place> = stage.moments.iter().map(|moment| Place::of(&problem, moment)).collect();

@@ -13,6 +13,9 @@ use crate::model::structure::{Dimension, ElementKind, Structure};
 pub const ELEMENTS: [&str; 9] =
     ["materials", "sections", "nodes", "bars", "plates", "bricks", "meshes", "triangles", "quads"];
 
+/// What needs elements, beside what they are made of.
+const OF_ELEMENTS: [&str; 2] = ["edges", "foundations"];
+
 /// What lies in the plane only.
 const OF_PLANE: [&str; 4] = ["plates", "triangles", "quads", "edges"];
 
@@ -59,7 +62,10 @@ pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
     let mut builder = Builder::default();
     builder.structure.dimension = fields.cursor().dimension();
     let names = match fields.optional("superelement") {
-        Some(at) => superelement::read(&mut builder, fields, at, path)?,
+        Some(at) => {
+            refuse_elements(fields);
+            superelement::read(&mut builder, at, path)?
+        }
         None => {
             let names = builder.add_nodes(fields.optional("nodes"), "nodes");
             elements::read(&mut builder, fields)?;
@@ -77,6 +83,16 @@ pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
         report_loose_nodes(&builder, fields, &names);
     }
     Some(Found { structure: builder.structure, places: builder.places, notes: builder.notes })
+}
+
+/// Refuses elements, and what needs them, beside a superelement.
+fn refuse_elements(fields: &Fields<'_>) {
+    let foreign: Vec<&str> = ELEMENTS.into_iter().chain(OF_ELEMENTS).collect();
+    fields.refuse(
+        &foreign,
+        |key| format!("`{key}` cannot stand beside `superelement`: that stands in the place of elements and nodes"),
+        "its own nodes are `superelement.nodes`; beside it stand contacts, supports, springs, ties, rigid and loads",
+    );
 }
 
 /// Finds the nodes that turn; those of rigid bodies are added when these are read.

@@ -7,30 +7,15 @@ use super::builder::Builder;
 use super::loads::{check_case_name, factor};
 use super::matrix_file;
 use super::matrix_market::{Entries, Size};
-use super::reader::{Cursor, Entry, Fields, Place};
-use super::structure::ELEMENTS;
+use super::reader::{Cursor, Entry, Place};
 use crate::model::structure::{Component, Load, LoadCase};
 use crate::model::superelement::Superelement;
 
 /// K may differ from its transpose by this much after scaling to unit diagonal.
 const SYMMETRY: f64 = 1e-8;
 
-/// What a structure needs elements for, beside these.
-const OF_ELEMENTS: [&str; 2] = ["edges", "foundations"];
-
 /// Reads the superelement: its nodes, dofs, K and loads. Returns the places of the names of its nodes.
-pub fn read<'d>(
-    builder: &mut Builder<'d>,
-    fields: &Fields<'d>,
-    at: Cursor<'d>,
-    path: Option<&Path>,
-) -> Option<Vec<Place<'d>>> {
-    let foreign: Vec<&str> = ELEMENTS.into_iter().chain(OF_ELEMENTS).collect();
-    fields.refuse(
-        &foreign,
-        |key| format!("`{key}` cannot stand beside `superelement`: that stands in the place of elements and nodes"),
-        "its own nodes are `superelement.nodes`; beside it stand contacts, supports, springs, ties, rigid and loads",
-    );
+pub fn read<'d>(builder: &mut Builder<'d>, at: Cursor<'d>, path: Option<&Path>) -> Option<Vec<Place<'d>>> {
     let own = at.fields(&["stiffness", "loads", "nodes", "dofs"])?;
     let nodes = own.required("nodes");
     let names = builder.add_nodes(nodes, "superelement.nodes");

@@ -9,8 +9,9 @@ use std::ops::Deref;
 use super::facing::Facing;
 use super::{Group, Members, Mesh, MeshNode};
 use crate::model::face::{Face, FaceSide};
-use crate::model::faces::{Faces, corners};
+use crate::model::faces::Faces;
 use crate::model::groups::Groups;
+use crate::model::shape::side_corners;
 use crate::model::vector::{cross, way};
 
 /// Why a group is no face. Nodes are indices into the mesh.
@@ -81,7 +82,7 @@ impl<M: Deref<Target = Mesh>> Surface<M> {
             let nodes = usizes(&self.mesh.elements[*area as usize].nodes);
             match self.faces.at(&nodes) {
                 [] => Err(FaceFault::NoSide(*area)),
-                [side] if nodes.len() > corners(nodes.len()) && !same(&nodes, &side.nodes) => {
+                [side] if nodes.len() > side_corners(nodes.len()) && !same(&nodes, &side.nodes) => {
                     Err(FaceFault::NoSide(*area))
                 }
                 [side] => Ok(side.clone()),
@@ -148,7 +149,7 @@ impl<M: Deref<Target = Mesh>> Surface<M> {
     /// Where a side looks by the largest component of its normal; at 45° up or down, then left or right.
     fn direction(&self, side: &FaceSide) -> usize {
         let at = |k: usize| self.node(side.nodes[k]).position;
-        let last = corners(side.nodes.len()) - 1;
+        let last = side_corners(side.nodes.len()) - 1;
         // Of a quadrilateral: its diagonals; of a triangle two sides.
         let [x, y, z] = cross(way(at(0), at(last - 1)), way(at(last - 2), at(last)));
         let largest = x.abs().max(y.abs()).max(z.abs()) * (1.0 - 1e-9);

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::model::faces::{Faces, corners};
+use crate::model::faces::Faces;
+use crate::model::shape::side_corners;
 use crate::model::structure::Structure;
 use crate::model::vector::{cross, dot, unit, way};
 
@@ -43,7 +44,7 @@ impl Surface {
 
 /// The nodes of a side as they lie round it, middles between their corners.
 fn ring(nodes: &[usize]) -> Vec<usize> {
-    let corners = corners(nodes.len());
+    let corners = side_corners(nodes.len());
     (0..corners).flat_map(|k| [Some(nodes[k]), nodes.get(corners + k).copied()]).flatten().collect()
 }
 

@@ -1,20 +1,12 @@
-//! The limit load of a case: factor, safety, how the structure collapses, and what has been proved of it.
+//! What is known of the limit of a load: factor, safety, how the structure collapses, and what has been proved of it.
 
-use std::sync::Arc;
-
-use super::edge::{Which, edge};
-use super::end::PathEnd;
-use super::limit_by_runs::limit_by_runs;
-use super::load::{LoadPath, LoadReach, trace};
-use super::load_parameter::LoadParameter;
-use super::start::PathError;
 use crate::answer::record::{Ray, Verdict};
-use crate::contact::problem::ContactProblem;
-use crate::explain::ray;
-use crate::lcp::problem::NOISE;
-use crate::model::rules::{Covering, Rules};
+use crate::path::end::PathEnd;
+use crate::path::load::LoadPath;
+use crate::path::load_parameter::LoadParameter;
+use crate::path::start::PathError;
 use crate::solve::problem::factors;
-use crate::solve::{Case, Prepared, Solved};
+use crate::solve::{Case, Prepared};
 use crate::text::number::short;
 
 /// The limit is confirmed by independent runs at (1 ± this) of it.
@@ -178,113 +170,7 @@ pub(super) fn beside(
     Ok((case.prepared.with_factors(&factors), factors))
 }
 
-/// Whether a run of its own finds an answer at a value.
-fn beside_answers(path: &LoadPath, case: Case<'_>, value: f64) -> Result<bool, PathError> {
-    let (there, _) = beside(&path.parameter, path.moves_loads(), case, value)?;
-    Ok(Case { prepared: &there, ..case }.under(Rules::default()).solve_pairs()?.answer.is_answer())
-}
-
 /// The size of a limit: one of 0 has none of its own.
 pub(super) fn size(factor: f64, present: f64) -> f64 {
     [factor.abs(), present.abs()].into_iter().find(|size| *size > 0.0).unwrap_or(1.0)
-}
-
-/// Finds the limit of a load case or load parameter from the present answer (from 0 where there is none): upwards, or
-/// downwards where the present value is negative.
-///
-/// # Errors
-/// See [`PathError`].
-pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limit, PathError> {
-    let negative = case.present(name).is_some_and(|present| present < 0.0);
-    if case.prepared.system().is_some_and(|system| system.is_in_space()) {
-        return limit_by_runs(case, name);
-    }
-    let to = negative.then_some(f64::NEG_INFINITY);
-    let path = trace(case, solved, name, LoadReach { to, through: false })?;
-    let found = of_path(case, path, negative)?;
-    if found.lost { bracketed(case, name, found) } else { Ok(found) }
-}
-
-/// The limit by runs of their own, where the path led on beyond it for rounding only: an answer on one side, a proved
-/// collapse on the other.
-fn bracketed(case: Case<'_>, name: &str, found: Limit) -> Result<Limit, PathError> {
-    let Some(start) = found.path.as_ref().map(|path| path.start) else { return Ok(found) };
-    let end = found.last;
-    let (range, which) = if end < start { ([end, start], Which::Least) } else { ([start, end], Which::Most) };
-    let edge = match edge(case, name, range, which) {
-        Ok(edge) => edge,
-        Err(PathError::Interrupted) => return Err(PathError::Interrupted),
-        // No other answer than the path's own.
-        Err(_) => return Ok(found),
-    };
-    let Some(beyond) = edge.collapse.as_ref().filter(|run| run.is_proved()) else { return Ok(found) };
-    let bracket = Some([edge.answer.value, beyond.value]);
-    if (edge.answer.value - beyond.value).abs() > BESIDE * size(beyond.value, found.present) {
-        // The proof refutes the end of the path, and nothing tells the limit closely.
-        return Ok(Limit { factor: None, safety: None, collapse: None, bracket, ..found });
-    }
-    let collapse = case.at(name, beyond.value)?.case(case).solve()?.answer.ray;
-    let safety = (found.present != 0.0).then(|| edge.value / found.present);
-    Ok(Limit { factor: Some(edge.value), safety, collapse, confirmed: true, bracket, ..found })
-}
-
-/// What the end of a path says of the limit.
-fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, PathError> {
-    let present = path.parameter.present;
-    // Beside the present value a limit of rounding is one of 0.
-    let factor = path.limit().map(|factor| if factor.abs() <= NOISE * present.abs() { 0.0 } else { factor });
-    let safety = factor.filter(|_| present != 0.0).map(|factor| factor / present);
-    let mut limit = Limit {
-        name: path.parameter.name.clone(),
-        last: path.factors.last().copied().unwrap_or(path.start),
-        path: None,
-        present,
-        factor,
-        safety,
-        collapse: None,
-        confirmed: false,
-        beyond: None,
-        bracket: None,
-        lost: false,
-    };
-    look_beside(&mut limit, &path, case, negative)?;
-    limit.path = Some(path);
-    Ok(limit)
-}
-
-/// Adds what runs of their own on both sides of the end of a path show.
-fn look_beside(limit: &mut Limit, path: &LoadPath, case: Case<'_>, negative: bool) -> Result<(), PathError> {
-    let (Some(factor), PathEnd::Limit(direction)) = (limit.factor, &path.end) else {
-        // Before a turning point there are answers, unless the path was led there by rounding.
-        if let PathEnd::Turning = &path.end {
-            let inside = limit.last - BESIDE * (limit.last - path.start);
-            limit.lost = !beside_answers(path, case, inside)?;
-        }
-        return Ok(());
-    };
-    let outwards = if negative { -1.0 } else { 1.0 } * BESIDE * size(factor, limit.present);
-    let over = factor + outwards;
-    let solve = |prepared: &Prepared| Case { prepared, ..case }.under(Rules::default()).solve_pairs();
-    let (there, factors) = beside(&path.parameter, path.moves_loads(), case, over)?;
-    let Some(system) = there.system() else { return Ok(()) };
-    let above = solve(&there)?;
-    if above.answer.is_answer() && !above.answer.marginal {
-        (limit.factor, limit.safety, limit.beyond) = (None, None, Some(over));
-        return Ok(());
-    }
-    if factor != 0.0 && !above.answer.is_answer() {
-        limit.confirmed = beside_answers(path, case, factor - outwards)?;
-        limit.lost = !limit.confirmed;
-    }
-    let problem = ContactProblem { system: Arc::clone(system), factors, ..path.problem_at(over) };
-    let mut collapse = ray::look(&problem, path.contact(), direction, 0.0);
-    if let Some(found) = &above.ray {
-        collapse.class = found.class;
-    }
-    ray::certify_ray(&mut collapse, &problem, there.built());
-    ray::explain(&mut collapse, &problem, there.built());
-    let mut collapse = collapse.record(system, Covering::default());
-    collapse.p = 0.0;
-    limit.put_collapse(collapse);
-    Ok(())
 }

@@ -1,10 +1,10 @@
 //! The limit of a load in space: no path leads there, since slips turn; runs of their own bracket it, each with an answer
 //! on Coulomb's cone or a collapse that is certified on it.
 
-use super::edge::{Run, narrowed};
-use super::limit::{BESIDE, Limit, beside, size};
-use super::load_parameter::LoadParameter;
-use super::start::PathError;
+use super::record::{BESIDE, Limit, beside, size};
+use crate::path::edge::{Run, narrowed};
+use crate::path::load_parameter::LoadParameter;
+use crate::path::start::PathError;
 use crate::solve::Case;
 
 /// The load is increased by so many times the increase before it …
