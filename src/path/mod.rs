@@ -32,4 +32,5 @@ pub mod static_shakedown;
 pub mod sweep;
 pub mod sweep_file;
 mod sweep_points;
+pub mod sweep_run;
 pub mod way;

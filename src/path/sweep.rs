@@ -1,27 +1,17 @@
 //! A sweep: the answer at every point of a grid, one row each, in the order of the grid whatever the number of
 //! threads. Each row tells what a cold run finds at its point, whichever way it was found ([`super::sweep_points`]).
 
-use std::io::Write;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
-
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use super::grid::{Grid, Shard};
 use super::sample::draw::Rule;
-use super::sweep_points::{Found, Points};
 use crate::answer::record::{Answer, State};
 use crate::model::dimension::Dimension;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
 use crate::text::hash::Hash;
 use crate::text::printable;
-use crate::watch::Watch;
-
-/// Points that are solved before they are written.
-const CHUNK: usize = 256;
 
 /// How rows are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -83,26 +73,6 @@ pub struct Header {
     pub quantities: Vec<String>,
 }
 
-/// What was done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Done {
-    /// Rows written now.
-    pub written: usize,
-    /// Rows that were there already.
-    pub found: usize,
-    /// Rows of the whole shard.
-    pub total: usize,
-    /// Rows with an answer among those written now.
-    pub answers: usize,
-}
-
-impl Done {
-    /// Whether nothing is missing.
-    pub fn is_complete(&self) -> bool {
-        self.found + self.written == self.total
-    }
-}
-
 /// Name of the last column of a file.
 pub const CHECKSUM: &str = "checksum";
 
@@ -129,19 +99,20 @@ pub(super) const COLUMNS: [&str; 16] = [
 /// Name of the format of sweep files.
 pub const FORMAT: &str = "stickslip-sweep/2";
 
-/// Passes on the wish to stop, not the progress of a single point.
-struct StopOnly<'a>(&'a dyn Watch);
-
-impl Watch for StopOnly<'_> {
-    fn stop(&self) -> bool {
-        self.0.stop()
-    }
+/// What is found at a point.
+pub(super) enum Found {
+    /// `watch` asked to stop.
+    Stopped,
+    /// Refused, in words.
+    Refused(String),
+    /// The fields of the row, and whether there is an answer.
+    Solved(Vec<Value>, bool),
 }
 
 /// A row: the point and what was found there.
-struct Row {
-    line: String,
-    is_answer: bool,
+pub(super) struct Row {
+    pub(super) line: String,
+    pub(super) is_answer: bool,
 }
 
 impl Sweep<'_> {
@@ -184,76 +155,13 @@ impl Sweep<'_> {
         self.header().columns()
     }
 
-    /// Solves the points of the shard after the first `found` and writes their rows to `out`, flushed as they come.
-    /// Stops after the rows that are ready when `watch` asks to.
-    ///
-    /// # Errors
-    /// Where `out` cannot be written.
-    pub fn run(&self, found: usize, out: &mut dyn Write, watch: &dyn Watch) -> std::io::Result<Done> {
-        self.run_by(Following::WhereItPays, found, out, watch)
-    }
-
-    /// The same, points following one another or not as asked for.
-    ///
-    /// # Errors
-    /// As [`Sweep::run`].
-    pub fn run_by(
-        &self,
-        following: Following,
-        found: usize,
-        out: &mut dyn Write,
-        watch: &dyn Watch,
-    ) -> std::io::Result<Done> {
-        let solver = Points::new(self, following);
-        let points = self.shard.points(self.grid.len());
-        let mut done = Done { written: 0, found, total: points.len(), answers: 0 };
-        let hash = self.header().hash;
-        let start = Instant::now();
-        let mut next = points.start + found;
-        let told = |ready: usize| {
-            let words = progress(ready, points.len(), ready - found, start.elapsed().as_secs_f64());
-            watch.progress(&words, ready as f64 / points.len() as f64);
-        };
-        while next < points.end && !watch.stop() {
-            let end = (next + CHUNK).min(points.end);
-            let stop_only = StopOnly(watch);
-            let solved = AtomicUsize::new(done.found + done.written);
-            let rows: Vec<Vec<Option<Row>>> = solver
-                .blocks(next..end)
-                .into_par_iter()
-                .map(|block| {
-                    if watch.stop() {
-                        return vec![None];
-                    }
-                    let found = solver.solve(block.clone(), &stop_only);
-                    let ready = solved.fetch_add(block.len(), Ordering::Relaxed) + block.len();
-                    told(ready);
-                    block.zip(found).map(|(index, found)| self.row(index, found, &hash)).collect()
-                })
-                .collect();
-            let rows: Vec<Option<Row>> = rows.into_iter().flatten().collect();
-            for row in rows.iter().map_while(Option::as_ref) {
-                out.write_all(row.line.as_bytes())?;
-                done.written += 1;
-                done.answers += usize::from(row.is_answer);
-            }
-            out.flush()?;
-            if rows.iter().any(Option::is_none) {
-                // Stopped: what comes after the gap would stand in the wrong place.
-                break;
-            }
-            next = end;
-        }
-        Ok(done)
-    }
-
     /// The fields of the parameters, by which a row is known again.
     pub fn key(&self, index: usize) -> String {
         key(self.grid, self.format, index)
     }
 
     /// `None` where `watch` asked to stop.
-    fn row(&self, index: usize, found: Found, hash: &str) -> Option<Row> {
+    pub(super) fn row(&self, index: usize, found: Found, hash: &str) -> Option<Row> {
         let (fields, is_answer) = match found {
             Found::Solved(fields, is_answer) => (fields, is_answer),
             Found::Stopped => return None,
@@ -352,17 +260,6 @@ pub(super) fn header_line(header: &Header, format: Format) -> String {
 pub(super) fn columns_line(columns: &[String]) -> String {
     let columns: Vec<String> = columns.iter().map(|column| cell(&Value::String(column.clone()))).collect();
     format!("{}\n", columns.join(","))
-}
-
-fn progress(ready: usize, total: usize, written: usize, seconds: f64) -> String {
-    let rate = if seconds > 0.0 { written as f64 / seconds } else { 0.0 };
-    let left = if rate > 0.0 { (total - ready) as f64 / rate } else { 0.0 };
-    let left = match left as u64 {
-        0..=119 => format!("{left:.0} s"),
-        120..=7199 => format!("{:.0} min", left / 60.0),
-        _ => format!("{:.1} h", left / 3600.0),
-    };
-    format!("{ready} of {total}, {rate:.0}/s, {left} left")
 }
 
 /// A number as JSON writes it: the shortest that reads back the same.

@@ -4,7 +4,8 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::sweep::{Done, FORMAT, Format, Header, Sweep};
+use super::sweep::{FORMAT, Format, Header, Sweep};
+use super::sweep_run::Done;
 use crate::watch::Watch;
 
 /// A longer line stands in no file of a sweep.

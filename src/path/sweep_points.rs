@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use super::quantity::Facts;
-use super::sweep::{COLUMNS, Following, Sweep, fields};
+use super::sweep::{COLUMNS, Following, Found, Sweep, fields};
 use crate::answer::record::Answer;
 use crate::model::parameter::ParameterValues;
 use crate::model::quantity::{OfAnswer, Quantity};
@@ -26,16 +26,6 @@ const BLOCK: usize = 16;
 const TOGETHER: usize = 8;
 /// A proof that the answers are unique takes as long as some twenty cold runs: it is looked for in a grid of this many points.
 const MANY: usize = 64;
-
-/// What is found at a point.
-pub(super) enum Found {
-    /// `watch` asked to stop.
-    Stopped,
-    /// Refused, in words.
-    Refused(String),
-    /// The fields of the row, and whether there is an answer.
-    Solved(Vec<Value>, bool),
-}
 
 /// On the way to [`Found`].
 enum Looked {

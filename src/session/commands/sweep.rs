@@ -22,7 +22,8 @@ use crate::view;
 use crate::watch::Watch;
 
 pub use crate::path::grid::Shard;
-pub use crate::path::sweep::{Done, Format};
+pub use crate::path::sweep::Format;
+pub use crate::path::sweep_run::Done;
 
 /// A table with more rows than this belongs in a file.
 const ROWS: usize = 2_000;
