@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-use super::record::OutcomeKind;
+use super::outcome::OutcomeKind;
 use crate::model::rules::{Covering, Engine, Rules, TieBreak};
 
 /// Covering vector d of a bare LCP.

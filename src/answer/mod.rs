@@ -4,6 +4,7 @@ pub mod attempt;
 pub mod check;
 pub mod check_plain;
 pub mod diagram;
+pub mod outcome;
 pub mod pair_record;
 pub mod pairs;
 pub mod ray_record;

@@ -1,10 +1,47 @@
 //! A pair as it stands in a result.
 
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
 
-use super::record::State;
 use crate::contact::polygon::angle;
 use crate::model::pair::LawKind;
+
+/// State of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+pub enum State {
+    /// Normal joint off.
+    #[serde(rename = "open")]
+    Open,
+    /// Both joints on.
+    #[serde(rename = "stick")]
+    Stick,
+    /// Slips along +t.
+    #[serde(rename = "slip+")]
+    SlipPlus,
+    /// Slips along −t.
+    #[serde(rename = "slip-")]
+    SlipMinus,
+    /// Slips in space, in a direction of its own.
+    #[serde(rename = "slip")]
+    Slip,
+    /// A frictionless pair in contact.
+    #[serde(rename = "closed")]
+    Closed,
+}
+
+impl State {
+    /// The word used everywhere.
+    pub fn word(self) -> &'static str {
+        match self {
+            State::Open => "open",
+            State::Stick => "stick",
+            State::SlipPlus => "slip+",
+            State::SlipMinus => "slip-",
+            State::Slip => "slip",
+            State::Closed => "closed",
+        }
+    }
+}
 
 /// What a pair in space has in vectors along t1 and t2.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,55 +5,14 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 pub use super::attempt::{Attempt, AttemptRules};
-pub use super::pair_record::{InSpace, PairState};
+pub use super::outcome::OutcomeKind;
+pub use super::pair_record::{InSpace, PairState, State};
 pub use super::ray_record::{Direction, PairDirection, Ray, RayClass, Slip, VariableRate, Verdict};
 use crate::contact::polygon::Polygon;
 use crate::fem::Piece;
 use crate::model::dimension::Dimension;
 use crate::model::uses::Redone;
 use crate::model::vector::length;
-
-/// How the run ended, as the user reads it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum OutcomeKind {
-    /// The main system is the answer; no pivot.
-    Trivial,
-    /// p reached zero.
-    Normal,
-    /// No answer found: see [`Ray`].
-    Ray,
-    /// The pivot limit was reached (a cycle ends here too).
-    PivotLimit,
-    /// The numbers no longer belonged together.
-    Breakdown,
-    /// An answer was found that failed its fresh check.
-    CheckFailed,
-}
-
-impl OutcomeKind {
-    /// The word used everywhere.
-    pub fn word(self) -> &'static str {
-        match self {
-            OutcomeKind::Trivial => "trivial",
-            OutcomeKind::Normal => "normal",
-            OutcomeKind::Ray => "ray",
-            OutcomeKind::PivotLimit => "pivot-limit",
-            OutcomeKind::Breakdown => "breakdown",
-            OutcomeKind::CheckFailed => "check-failed",
-        }
-    }
-
-    /// Whether it is an answer.
-    pub fn is_answer(self) -> bool {
-        matches!(self, OutcomeKind::Trivial | OutcomeKind::Normal)
-    }
-
-    /// Whether the run failed: neither an answer nor a ray.
-    pub fn is_failure(self) -> bool {
-        matches!(self, OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed)
-    }
-}
 
 /// Joint of a pair that a pivot turned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -95,43 +54,6 @@ pub struct PivotRecord {
     pub turned: Option<Turned>,
     /// The pivot in a sentence.
     pub sentence: String,
-}
-
-/// State of a pair.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-pub enum State {
-    /// Normal joint off.
-    #[serde(rename = "open")]
-    Open,
-    /// Both joints on.
-    #[serde(rename = "stick")]
-    Stick,
-    /// Slips along +t.
-    #[serde(rename = "slip+")]
-    SlipPlus,
-    /// Slips along −t.
-    #[serde(rename = "slip-")]
-    SlipMinus,
-    /// Slips in space, in a direction of its own.
-    #[serde(rename = "slip")]
-    Slip,
-    /// A frictionless pair in contact.
-    #[serde(rename = "closed")]
-    Closed,
-}
-
-impl State {
-    /// The word used everywhere.
-    pub fn word(self) -> &'static str {
-        match self {
-            State::Open => "open",
-            State::Stick => "stick",
-            State::SlipPlus => "slip+",
-            State::SlipMinus => "slip-",
-            State::Slip => "slip",
-            State::Closed => "closed",
-        }
-    }
 }
 
 /// Fresh check of an answer from R, RF, f and K: numbers without unit. A force or reserve is measured by the magnitudes of

@@ -1,7 +1,8 @@
 //! Bricks: boxes of hexahedra, and their six faces.
 
+use super::element::{Element, ElementKind};
 use super::face::{Face, FaceSide};
-use super::structure::{Element, ElementKind, Node};
+use super::node::Node;
 
 /// A box of the file as it describes it, checked.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,7 @@
 //! in bar axes (x from start to end; in the plane y = x turned +90°), moments right-handed. In the plane V_y is Q and
 //! M_z is M. In the x–z plane a bar bends as in x–y, with its rotation from x to z: −r_y.
 
-use super::Acting;
+use super::acting::Acting;
 use crate::model::bar_axes::BarAxes;
 use crate::model::structure::ElementLoad;
 

@@ -2,9 +2,10 @@
 
 use nalgebra::DMatrix;
 
+use super::acting::Acting;
 use super::bar_load::{BarForces, BarLoad, Bending, Internal};
 use super::beam::{Beam, Matrix6, Vector6};
-use super::{Acting, FiniteElement, NO_LENGTH, Stiffness};
+use super::finite_element::{FiniteElement, NO_LENGTH, Stiffness};
 use crate::doubled::{Doubled, Real};
 use crate::model::bar_axes::BarAxes;
 use crate::model::structure::Material;

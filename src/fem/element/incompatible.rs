@@ -12,7 +12,7 @@
 
 use std::ops::Range;
 
-use super::Stiffness;
+use super::finite_element::Stiffness;
 use super::jacobian::{SpaceJacobian, Triple, determinant, in_plane};
 use crate::doubled::Real;
 
@@ -61,7 +61,7 @@ pub fn completed(k: &Stiffness, nodes: &[f64], count: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::FiniteElement;
+    use super::super::finite_element::FiniteElement;
     use super::super::membrane::Membrane;
     use crate::model::structure::{Material, Plane};
 

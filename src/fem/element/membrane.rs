@@ -9,9 +9,10 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::acting::{Acting, free_strain};
+use super::finite_element::{FiniteElement, Stiffness, Stress, weighted};
 use super::incompatible;
 use super::jacobian::{determinant, in_plane};
-use super::{Acting, FiniteElement, Stiffness, Stress, free_strain, weighted};
 use crate::doubled::{Doubled, Real};
 use crate::model::shape_functions::{AreaShape, MOST};
 use crate::model::structure::{ElementLoad, Material, Plane};

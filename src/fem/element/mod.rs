@@ -4,8 +4,10 @@
 //! Which displacements its rows are is told by [`slots`], and how it lies among others by
 //! [`Element`](crate::model::structure::Element).
 
+mod acting;
 pub mod bar_load;
 mod beam;
+mod finite_element;
 mod frame;
 mod incompatible;
 mod jacobian;
@@ -14,77 +16,19 @@ mod space;
 pub mod spring;
 mod truss;
 
-use nalgebra::DMatrix;
-
-use self::bar_load::BarForces;
+pub use self::acting::Acting;
+use self::finite_element::NO_LENGTH;
+pub use self::finite_element::{FiniteElement, Number, Stiffness, Stress};
 use self::frame::Frame;
 use self::membrane::Membrane;
 use self::space::{Solid, SpaceFrame};
 use self::truss::Truss;
 use super::error::MainSystemError;
-use crate::doubled::{Doubled, Real};
 use crate::model::bar_axes::AxesFault;
-use crate::model::structure::{Component, Element, ElementKind, ElementLoad, Spring, Structure};
+use crate::model::structure::{Component, Element, ElementKind, Spring, Structure};
 
 /// A row of an element's stiffness: node and component.
 pub type Slot = (usize, Component);
-
-/// Stiffness of an element in global axes, rows as in [`slots`]; forces per displacement.
-pub type Stiffness<T = f64> = DMatrix<T>;
-
-/// What acts on one element beside its nodes, each load with its factor.
-pub type Acting<'a> = [(f64, &'a ElementLoad)];
-
-/// σ_xx, σ_yy, σ_xy, σ_zz, σ_yz and σ_zx, tension positive; the last two are 0 in the plane.
-pub type Stress = [f64; 6];
-
-/// Σ weight × stress.
-fn weighted(weights: &[f64], stresses: impl Iterator<Item = Stress>) -> Stress {
-    let mut sum = Stress::default();
-    for (weight, stress) in weights.iter().zip(stresses) {
-        sum.iter_mut().zip(stress).for_each(|(sum, value)| *sum += weight * value);
-    }
-    sum
-}
-
-/// What an element does with displacements and loads. Vectors and matrices have rows as in [`slots`].
-pub trait FiniteElement {
-    /// Stiffness in global axes.
-    ///
-    /// # Errors
-    /// What is wrong with its shape, in words that follow its name.
-    fn stiffness(&self) -> Result<Stiffness, &'static str>;
-
-    /// The same in doubled precision.
-    ///
-    /// # Errors
-    /// As [`FiniteElement::stiffness`].
-    fn doubled_stiffness(&self) -> Result<Stiffness<Doubled>, &'static str>;
-
-    /// Nodal forces in global axes that stand for what acts; kinds of load that no reader puts on it count nothing.
-    fn nodal_forces(&self, acting: &Acting) -> Vec<f64>;
-
-    /// Internal forces of a bar for its displacements `u`.
-    fn bar_forces(&self, _u: &[f64], _acting: &Acting) -> Option<BarForces> {
-        None
-    }
-
-    /// Displacements in global axes of places of a bar that bends, these shares of its length from its start (ascending), for
-    /// its displacements `u`.
-    fn elastic_curve(&self, _u: &[f64], _acting: &Acting, _shares: &[f64]) -> Option<Vec<[f64; 3]>> {
-        None
-    }
-
-    /// Stress of an area or a solid at its centre for its displacements `u`.
-    fn stress(&self, _u: &[f64], _acting: &Acting) -> Option<Stress> {
-        None
-    }
-
-    /// Stresses of an area or a solid at its nodes for its displacements `u`.
-    fn node_stresses(&self, _u: &[f64], _acting: &Acting) -> Option<Vec<Stress>> {
-        None
-    }
-}
 
 /// The finite element behind element number `index`.
 ///
@@ -117,17 +61,6 @@ pub fn finite_element(structure: &Structure, index: usize) -> Result<Box<dyn Fin
     })
 }
 
-const NO_LENGTH: &str = "its two nodes are at the same place";
-
-/// α ΔT of what acts.
-fn free_strain(acting: &Acting) -> f64 {
-    let strains = acting.iter().map(|(factor, load)| match load {
-        ElementLoad::FreeStrain { strain, .. } => factor * strain,
-        ElementLoad::Body(_) | ElementLoad::Line { .. } | ElementLoad::Point { .. } => 0.0,
-    });
-    strains.sum()
-}
-
 /// The displacements of an element's rows in their order, node by node.
 pub fn slots(element: &Element) -> Vec<Slot> {
     let mut slots = Vec::with_capacity(3 * element.nodes.len());
@@ -135,27 +68,6 @@ pub fn slots(element: &Element) -> Vec<Slot> {
         slots.extend(element.components(at).iter().map(|&component| (node, component)));
     }
     slots
-}
-
-/// A number in which elements can give their stiffness.
-pub trait Number: Real {
-    /// Stiffness of an element.
-    ///
-    /// # Errors
-    /// What is wrong with its shape.
-    fn stiffness(element: &dyn FiniteElement) -> Result<Stiffness<Self>, &'static str>;
-}
-
-impl Number for f64 {
-    fn stiffness(element: &dyn FiniteElement) -> Result<Stiffness, &'static str> {
-        element.stiffness()
-    }
-}
-
-impl Number for Doubled {
-    fn stiffness(element: &dyn FiniteElement) -> Result<Stiffness<Doubled>, &'static str> {
-        element.doubled_stiffness()
-    }
 }
 
 /// What a stiffness may be as a number: beyond, products of it lose digits to underflow, or overflow.

@@ -4,8 +4,9 @@
 
 use nalgebra::DMatrix;
 
+use super::acting::Acting;
 use super::bar_load::{BarForces, BarLoad, Bending, Internal};
-use super::{Acting, FiniteElement, NO_LENGTH, Stiffness};
+use super::finite_element::{FiniteElement, NO_LENGTH, Stiffness};
 use crate::doubled::{Doubled, Real};
 use crate::model::bar_axes::{AxesFault, BarAxes, direction};
 use crate::model::structure::Material;

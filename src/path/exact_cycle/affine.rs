@@ -3,7 +3,7 @@
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
-use super::{Place, Question, Refused, SlipMap, Stretch, Way};
+use super::question::{Place, Question, Refused, SlipMap, Stretch, Way};
 use crate::answer::record::State;
 use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::exact::rational_solve::{RationalSolution, clear_denominators, product, solve};

@@ -3,7 +3,7 @@
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
-use super::{Place, Question, Refused};
+use super::question::{Place, Question, Refused};
 use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::text::number::short;
 

@@ -9,15 +9,16 @@
 
 mod affine;
 mod judge;
+mod question;
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
 use num_rational::BigRational;
 
 use self::affine::Family;
-use super::stages::{Moment, StageResult};
-use crate::answer::record::State;
+pub use self::question::SlipMap;
+use self::question::{Place, Question, Refused, SECONDS, Stretch};
+use super::stages::StageResult;
 use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::exact_system::ExactSystem;
 use crate::lcp::exact::dyadic::{nearest, rational};
@@ -32,9 +33,6 @@ pub const MOST_SCHEMES: usize = 120;
 const PASSES: usize = 3;
 /// Contact forces of the exact cycle and of the one followed differ by at most this share of the largest.
 const NEAR: f64 = 1e-9;
-/// Time for one proof.
-const SECONDS: u64 = 10;
-
 /// What is proved of the repetition of a cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Repetition {
@@ -59,84 +57,6 @@ pub struct ExactLoop {
     pub distance: f64,
     /// The largest slip that it leaves behind, exact but for the rounding to f64: a length.
     pub net: f64,
-}
-
-/// The affine map that a cycle of given schemes makes of the slips of the pairs that stick where it begins.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SlipMap {
-    /// Slips come back as they were.
-    Identical,
-    /// Differences of slips shrink to at most this share, in the largest of them, within so many cycles.
-    Contracting { share: f64, cycles: u32 },
-    /// Neither is proved.
-    Open,
-}
-
-impl SlipMap {
-    /// Its word in results.
-    pub fn word(self) -> &'static str {
-        match self {
-            SlipMap::Identical => "identical",
-            SlipMap::Contracting { .. } => "contracting",
-            SlipMap::Open => "open",
-        }
-    }
-}
-
-/// What every pair does, and what holds it where it is open.
-type Way = Vec<(State, Option<State>)>;
-
-/// A stretch of one working scheme.
-#[derive(Clone)]
-struct Stretch<'a> {
-    /// 0: on the way there; 1: on the way back.
-    half: usize,
-    way: Way,
-    /// The f64 state at its end.
-    end: &'a Moment,
-}
-
-/// A state of the loop; of all joints.
-struct Place {
-    half: usize,
-    /// Share of that half, 0 … 1.
-    t: BigRational,
-    z: Vec<BigRational>,
-    force: Vec<BigRational>,
-}
-
-/// A cycle of a load between two values, in rationals.
-struct Question<'a> {
-    /// The problem at the first value and at the second.
-    ends: [ExactSystem<'a>; 2],
-    stretches: Vec<Stretch<'a>>,
-    /// The f64 state where it begins …
-    begin: &'a Moment,
-    /// … and the scheme with which that was reached.
-    reached: Way,
-    watch: &'a dyn Watch,
-}
-
-/// Why no proof came about.
-type Refused = String;
-
-impl Question<'_> {
-    fn go_on(&self) -> Result<(), Refused> {
-        match self.watch.go_on() {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(format!("it was not ready within {SECONDS} s")),
-        }
-    }
-
-    fn problem(&self) -> &ContactProblem {
-        self.ends[0].problem
-    }
-
-    /// The constant of a joint's λ at the beginning of a half, and its change over it.
-    fn constant(&self, half: usize, joint: usize) -> (&BigRational, BigRational) {
-        let [from, to] = [half, 1 - half].map(|end| &self.ends[end].constants[joint]);
-        (from, to - from)
-    }
 }
 
 /// Proves that a cycle repeats: `before` is the stage that ends where it begins, `halves` are its way there and back, under

@@ -6,7 +6,8 @@ use num_traits::{One, Zero};
 use super::judge::judged;
 use super::{Place, Question, question};
 use crate::model::embedded;
-use crate::path::cycle::{Kind, followed, target};
+use crate::path::cycle::{Kind, followed};
+use crate::path::load_parameter::factors_at;
 use crate::path::stages::Begin;
 use crate::solve::prepare;
 use crate::solve::problem::contact_problem;
@@ -26,8 +27,9 @@ fn with_loop(name: &str, set: &[(&str, f64)], (load, to): (&str, f64), test: &dy
     let last = 2 * found.turns.len();
     let stages = &found.history.stages;
     let system = prepared.system().expect("a system");
-    let problems = [0.0, to]
-        .map(|end| contact_problem(system, &target(case, load, end).expect("factors"), &values).without_load_noise());
+    let problems = [0.0, to].map(|end| {
+        contact_problem(system, &factors_at(case, load, end).expect("factors"), &values).without_load_noise()
+    });
     let question = question(&problems, &stages[last - 2], [&stages[last - 1], &stages[last]], &Quiet);
     let question = question.unwrap_or_else(|refusal| panic!("{refusal:?}"));
     let (_, places, _) = question.closed().unwrap_or_else(|why| panic!("{name}: {why}"));

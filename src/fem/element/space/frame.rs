@@ -6,10 +6,11 @@
 
 use nalgebra::{DMatrix, SMatrix, SVector};
 
+use super::super::acting::Acting;
 use super::super::bar_load::{BarForces, BarLoad, Bending, Internal};
 use super::super::beam::Beam;
+use super::super::finite_element::{FiniteElement, Stiffness};
 use super::super::frame::ZERO;
-use super::super::{Acting, FiniteElement, Stiffness};
 use crate::doubled::{Doubled, Real};
 use crate::model::bar_axes::{AxesFault, BarAxes};
 use crate::model::space_section::{EndJoint, SpaceSection};

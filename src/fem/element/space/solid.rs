@@ -8,9 +8,10 @@
 //! ```
 //! Hughes, *The Finite Element Method*, 1987, §2.7 and §3.10.
 
+use super::super::acting::{Acting, free_strain};
+use super::super::finite_element::{FiniteElement, Stiffness, Stress, weighted};
 use super::super::incompatible;
 use super::super::jacobian::{SpaceJacobian, Triple};
-use super::super::{Acting, FiniteElement, Stiffness, Stress, free_strain, weighted};
 use crate::doubled::{Doubled, Real};
 use crate::model::shape_functions::{MOST_OF_SOLID, SolidShape, TETRAHEDRON_SIDES, VolumePoint};
 use crate::model::structure::{ElementLoad, Material};
