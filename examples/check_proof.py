@@ -12,6 +12,9 @@ from fractions import Fraction
 from math import lcm
 
 
+# -------- fractions and rows of them
+
+
 def need(holds, why):
     if not holds:
         raise ValueError(why)
@@ -32,7 +35,8 @@ def without(row, other, at):
 
 
 def reduced(rows):
-    """place -> row that is 1 there and 0 at the other places; a row takes the place of its largest entry, the first of such"""
+    """place -> row that is 1 there and 0 at the other places; a row takes the place of its largest entry, the first of
+    such"""
     done = {}
     for row in rows:
         for at, other in done.items():
@@ -44,17 +48,7 @@ def reduced(rows):
     return done
 
 
-def stiffness(R, kernel):
-    """R with the motions of the kernel as such to the last digit: [1 -G]' R_NN [1 -G], where the motions are [G; 1]"""
-    own, R = reduced(kernel), [list(row) for row in R]
-    rest = [j for j in range(len(R)) if j not in own]
-    for p, z in own.items():
-        for n in rest:
-            R[n][p] = R[p][n] = -sum(R[n][j] * z[j] for j in rest if z[j])
-    for p, z in own.items():
-        for q in own:
-            R[p][q] = -sum(z[j] * R[j][q] for j in rest if z[j])
-    return R
+# -------- answers: a problem is a list of forms, affine in its unknowns; what is claimed is about their signs
 
 
 def holds(values, zero, signs):
@@ -117,6 +111,9 @@ class Problem:
         return 0
 
 
+# -------- an LCP
+
+
 def of_lcp(lcp):
     names, M, q = lcp["names"], [exact(row) for row in lcp["M"]], exact(lcp["q"])
     need(len(set(names)) == len(names) == len(M) == len(q) and all(len(row) == len(q) for row in M), "M, q or names")
@@ -127,11 +124,131 @@ def of_lcp(lcp):
     return problem
 
 
+# -------- pairs
+
+
+def of_contact(system, proof):
+    """the load, the laws, R and what the proof needs of them: a motion in the kernel needs no forms, and one on Coulomb's
+    cone has none"""
+    ids, (load,), tangents = system["pairs"], system["loads"].values(), system.get("tangents", 1)
+    words, m, size = ["t"] if tangents == 1 else ["t1", "t2"], len(ids), (1 + tangents) * len(ids)
+    R, kernel = [exact(row) for row in system["stiffness"]], [exact(z) for z in system.get("kernel", [])]
+    vector = exact(load["vector"])
+    need(tangents in (1, 2) and len(set(ids)) == m and len(R) == size, "the size of the system")
+    need(all(len(z) == size for z in R + kernel + [vector]), "the size of R, its kernel or the load")
+    need(all(R[i][j] == R[j][i] for i in range(size) for j in range(i)), "R is not symmetric")
+    need(load["factor"] == 1, "the factor of the load")
+    friction, cohesion, bound, gaps = (exact(system[key]) for key in ("friction", "cohesion", "bound", "gap"))
+    slips = {name: [f"z_{word} {name}" for word in words] for name in ids}
+    problem = Problem([f"z_n {name}" for name in ids] + sum(slips.values(), []))
+    problem.slips, problem.load, problem.kernel = slips, vector, kernel
+    problem.laws = list(zip(ids, system["law"], friction, map(sum, zip(cohesion, bound))))
+    need(len(problem.laws) == m == len(gaps) and min(friction) >= 0, "the laws")
+    need(all(law in ("coulomb", "frictionless", "bound") and c >= 0 for _, law, _, c in problem.laws), "a law")
+    problem.directions = facets(proof["directions"]) if tangents == 2 and "directions" in proof else None
+    if proof.get("amounts"):
+        return problem
+    problem.R = stiffness(R, kernel)
+    if tangents == 2 and problem.directions is None:
+        need(proof["claim"] == "collapse", "no directions")
+        return problem
+    force = [row + [q - dot(row[:m], gaps)] for row, q in zip(problem.R, vector)]
+    for i, law in enumerate(problem.laws):
+        pair(problem, law, force[i], force[m + tangents * i : m + tangents * (i + 1)])
+    return problem
+
+
+def pair(problem, law, normal, tangential):
+    """the forms of a pair from those of its forces, their signs, and what it can do"""
+    name, law, f, c = law
+    z_n, x_n, z_t = f"z_n {name}", f"x_n {name}", problem.slips[name]
+    problem.forms[x_n] = normal
+    if law == "bound":
+        problem.zero.add(z_n)
+    else:
+        problem.signed |= {z_n, x_n}
+    if law == "frictionless":
+        for slip, row in zip(z_t, tangential):
+            force = slip.replace("z", "x", 1)
+            problem.forms[force] = row
+            problem.zero |= {force} if any(row[:-1]) else {force, slip}
+        problem.groups[name] = {"closed": ({z_n}, {}), "open": ({x_n}, {})}
+        return
+    bound = [f * a for a in normal]
+    bound[-1] += c
+    ways, held_by_nothing = (plane if len(z_t) == 1 else space)(problem, name, bound, tangential, z_t)
+    of = lambda word, on: {word + way: ({on} | zero, signs) for way, (zero, signs) in ways.items()}
+    free = {"open": ({x_n} | held_by_nothing, {})}
+    problem.groups[name] = of("", z_n) | ({} if law == "bound" else of("open ", x_n) if c else free)
+
+
+def plane(problem, name, bound, tangential, z_t):
+    """x+, x- and the slips along t: what a closed pair can do, and the forms that are zero where nothing holds it"""
+    plus, minus, z_t, tangential = f"x+ {name}", f"x- {name}", *z_t, *tangential
+    for reserve, side in ((plus, 1), (minus, -1)):
+        problem.forms[reserve] = [a + side * b for a, b in zip(bound, tangential)]
+    problem.signed |= {plus, minus}
+    return {"stick": ({z_t}, {}), "slip+": ({plus}, {z_t: 1}), "slip-": ({minus}, {z_t: -1})}, {plus, minus}
+
+
+# -------- collapse
+
+
+def collapse(problem, proof):
+    """a motion without energy that presses no pair, on which the loads do more than contact can take"""
+    motion = {name: Fraction(text) for name, text in proof["motion"].items()}
+    amounts = [Fraction(text) for text in proof["amounts"]]
+    need(set(motion) == set(problem.unknowns) and len(amounts) in (0, len(problem.kernel)), "the motion or its amounts")
+    z = [motion[name] for name in problem.unknowns]
+    if amounts:
+        need(all(x == dot(column, amounts) for x, column in zip(z, zip(*problem.kernel))), "the motion is not of the kernel")
+    else:
+        need(not any(dot(row, z) for row in problem.R), "the motion costs energy")
+    slips = {name: reach(problem, name, motion, proof.get("slips")) for name in problem.slips}
+    for name, law, f, c in problem.laws:
+        part, f = motion[f"z_n {name}"], 0 if law == "frictionless" else f
+        need(part == 0 if law == "bound" else part >= f * slips[name], f"the motion presses pair {name}")
+    work = -dot(problem.load, z)
+    bound = sum(c * slips[name] for name, law, _, c in problem.laws if law != "frictionless")
+    need((work, bound) == (Fraction(proof["work"]), Fraction(proof["bound"])) and work > bound, "the work or its bound")
+    does = f"the loads do {float(work):.6g}, contact takes at most {float(bound):.6g}"
+    return f"collapse: on this motion {does}; no answer"
+
+
+def reach(problem, name, motion, slips):
+    """what counts as |slip| of a pair: in the plane its size, in space a bound of it from above that the proof gives"""
+    z = [motion[slip] for slip in problem.slips[name]]
+    if len(z) == 1:
+        return abs(z[0])
+    need(reaches(problem.directions, z, Fraction(slips[name])), f"{name} slips farther than it says")
+    return Fraction(slips[name])
+
+
+# -------- parts that only contact holds
+
+
+def stiffness(R, kernel):
+    """R with the motions of the kernel as such to the last digit: [1 -G]' R_NN [1 -G], where the motions are [G; 1]"""
+    own, R = reduced(kernel), [list(row) for row in R]
+    rest = [j for j in range(len(R)) if j not in own]
+    for p, z in own.items():
+        for n in rest:
+            R[n][p] = R[p][n] = -sum(R[n][j] * z[j] for j in rest if z[j])
+    for p, z in own.items():
+        for q in own:
+            R[p][q] = -sum(z[j] * R[j][q] for j in rest if z[j])
+    return R
+
+
+# -------- in space
+
+
 def facets(half):
     """the directions of a polygon from those that are no mirrors: in order around, together a half turn"""
     half = [tuple(map(Fraction, direction)) for direction in half]
     around = half + [(-a, -b) for a, b in half]
-    need(len(half) >= 2 and all(cross(d, e) > 0 for d, e in zip(around, around[1:])), "the directions are not in order around")
+    turns = all(cross(d, e) > 0 for d, e in zip(around, around[1:]))
+    need(len(half) >= 2 and turns, "the directions are not in order around")
     need(all(abs(a * a + b * b - 1) < Fraction(1, 10**15) for a, b in around), "a direction whose length is not 1")
     return around
 
@@ -140,16 +257,7 @@ def cross(d, e):
     return d[0] * e[1] - d[1] * e[0]
 
 
-def plane(problem, name, c, bound, tangential, z_t):
-    """x+, x- and the slips along t: the words of what a closed pair can do, and two forms that are zero where nothing holds it"""
-    plus, minus, z_t, tangential = f"x+ {name}", f"x- {name}", *z_t, *tangential
-    for reserve, side in ((plus, 1), (minus, -1)):
-        problem.forms[reserve] = [a + side * b for a, b in zip(bound, tangential)]
-    problem.signed |= {plus, minus}
-    return {"stick": ({z_t}, {}), "slip+": ({plus}, {z_t: 1}), "slip-": ({minus}, {z_t: -1})}, {plus, minus}
-
-
-def space(problem, name, c, bound, tangential, z_t):
+def space(problem, name, bound, tangential, z_t):
     """the same on a polygon: x^k of its facets, turn^k = d_k cross z_t"""
     count = len(problem.directions)
     x = lambda k: f"x^{k % count} {name}"
@@ -167,88 +275,28 @@ def space(problem, name, c, bound, tangential, z_t):
     return ways, {x(0), x(1)}
 
 
-def of_contact(system, proof):
-    """a motion in the kernel needs no forms, and one on Coulomb's cone has none"""
-    directions = proof.get("directions")
-    ids, m, (load,), tangents = system["pairs"], len(system["pairs"]), system["loads"].values(), system.get("tangents", 1)
-    size = (1 + tangents) * m
-    R, kernel, vector = [exact(row) for row in system["stiffness"]], [exact(z) for z in system.get("kernel", [])], exact(load["vector"])
-    need(tangents in (1, 2) and len(set(ids)) == m and len(R) == size and all(len(z) == size for z in R + kernel + [vector]), "the size of the system")
-    need(load["factor"] == 1 and all(R[i][j] == R[j][i] for i in range(size) for j in range(i)), "the load, or R is not symmetric")
-    friction, cohesion, bound, gaps = (exact(system[key]) for key in ("friction", "cohesion", "bound", "gap"))
-    words = ["t"] if tangents == 1 else ["t1", "t2"]
-    slips = {name: [f"z_{word} {name}" for word in words] for name in ids}
-    problem = Problem([f"z_n {name}" for name in ids] + sum(slips.values(), []))
-    problem.slips, problem.directions = slips, facets(directions) if tangents == 2 and directions is not None else None
-    problem.load, problem.kernel, problem.laws = vector, kernel, list(zip(ids, system["law"], friction, map(sum, zip(cohesion, bound))))
-    need(len(problem.laws) == m == len(gaps) and min(friction) >= 0, "the laws")
-    need(all(law in ("coulomb", "frictionless", "bound") and c >= 0 for _, law, _, c in problem.laws), "a law")
-    if proof.get("amounts"):
-        return problem
-    problem.R = stiffness(R, kernel)
-    if tangents == 2 and directions is None:
-        need(proof["claim"] == "collapse", "no directions")
-        return problem
-    force = [row + [q - dot(row[:m], gaps)] for row, q in zip(problem.R, vector)]
-    for i, (name, law, f, c) in enumerate(problem.laws):
-        normal, tangential = force[i], force[m + tangents * i : m + tangents * (i + 1)]
-        z_n, x_n, z_t = f"z_n {name}", f"x_n {name}", slips[name]
-        problem.forms[x_n] = normal
-        if law == "bound":
-            problem.zero.add(z_n)
-        else:
-            problem.signed |= {z_n, x_n}
-        if law == "frictionless":
-            for word, slip, row in zip(words, z_t, tangential):
-                problem.forms[f"x_{word} {name}"] = row
-                problem.zero |= {f"x_{word} {name}"} if any(row[:-1]) else {f"x_{word} {name}", slip}
-            problem.groups[name] = {"closed": ({z_n}, {}), "open": ({x_n}, {})}
-            continue
-        bound = [f * a for a in normal]
-        bound[-1] += c
-        ways, held_by_nothing = (plane if tangents == 1 else space)(problem, name, c, bound, tangential, z_t)
-        of = lambda word, on: {word + way: ({on} | zero, signs) for way, (zero, signs) in ways.items()}
-        free = {"open": ({x_n} | held_by_nothing, {})}
-        problem.groups[name] = of("", z_n) | ({} if law == "bound" else of("open ", x_n) if c else free)
-    return problem
-
-
-def reach(problem, name, motion, slips):
-    """what counts as |slip| of a pair: in the plane its size, in space a bound of it from above that the proof gives"""
-    z = [motion[slip] for slip in problem.slips[name]]
-    if len(z) == 1:
-        return abs(z[0])
-    most = Fraction(slips[name])
-    if problem.directions is None:  # Coulomb's cone
-        need(most >= 0 and most**2 >= z[0] ** 2 + z[1] ** 2, f"{name} slips farther than it says")
-        return most
-    pairs = zip(problem.directions, problem.directions[1:] + problem.directions[:1])  # z = a d + b e
+def reaches(directions, z, most):
+    """whether a slip counts as no more than this: on Coulomb's cone, or on the polygon, where z = a d + b e counts a + b"""
+    if directions is None:
+        return most >= 0 and most**2 >= z[0] ** 2 + z[1] ** 2
+    pairs = zip(directions, directions[1:] + directions[:1])
     parts = [(cross(z, e) / cross(d, e), cross(d, z) / cross(d, e)) for d, e in pairs]
-    need(any(a >= 0 and b >= 0 and a + b <= most for a, b in parts), f"{name} slips farther than it says")
-    return most
+    return any(a >= 0 and b >= 0 and a + b <= most for a, b in parts)
 
 
-def collapse(problem, proof):
-    """a motion without energy that presses no pair, on which the loads do more than contact can take"""
-    motion, amounts = {name: Fraction(text) for name, text in proof["motion"].items()}, [Fraction(text) for text in proof["amounts"]]
-    need(set(motion) == set(problem.unknowns) and len(amounts) in (0, len(problem.kernel)), "the motion or its amounts")
-    z = [motion[name] for name in problem.unknowns]
-    free = all(x == dot(column, amounts) for x, column in zip(z, zip(*problem.kernel))) if amounts else not any(dot(row, z) for row in problem.R)
-    need(free, "the motion costs energy")
-    slips = {name: reach(problem, name, motion, proof.get("slips")) for name in problem.slips}
-    for name, law, f, c in problem.laws:
-        part, f = motion[f"z_n {name}"], 0 if law == "frictionless" else f
-        need(part == 0 if law == "bound" else part >= f * slips[name], f"the motion presses pair {name}")
-    work, bound = -dot(problem.load, z), sum(c * slips[name] for name, law, _, c in problem.laws if law != "frictionless")
-    need((work, bound) == (Fraction(proof["work"]), Fraction(proof["bound"])) and work > bound, "the work or its bound")
-    return f"collapse: on this motion the loads do {float(work):.6g}, contact takes at most {float(bound):.6g}; no answer"
+# -------- the files
 
 
 def check(proof, system):
     """the sentence that is proved; raises where it is not"""
-    expected = {"answer": {"scheme", "values"}, "answers": {"answers", "tree"}, "collapse": {"motion", "amounts", "work", "bound"}}
-    allowed = {"format", "system", "claim"} | expected[proof["claim"]]
-    need(proof["format"] == "stickslip-proof/1" and allowed <= set(proof) <= allowed | {"directions", "slips"}, "another format")
+    parts = {
+        "answer": {"scheme", "values"},
+        "answers": {"answers", "tree"},
+        "collapse": {"motion", "amounts", "work", "bound"},
+    }
+    keys = {"format", "system", "claim"} | parts[proof["claim"]]
+    need(keys <= set(proof) <= keys | {"directions", "slips"}, "a key is missing, or one too many")
+    need(proof["format"] == "stickslip-proof/1", "another format")
     problem = of_lcp(system["lcp"]) if "lcp" in system else of_contact(system["contact_system"], proof)
     if proof["claim"] == "collapse":
         return collapse(problem, proof)
@@ -259,7 +307,8 @@ def check(proof, system):
             need(holds(values, *problem.groups[group][word]), f"{group} is not {word}")
         return f"an answer: the values of {len(values)} quantities, every sign"
     answers = [problem.read(values) for values in proof["answers"]]
-    need(len({tuple(values[name] for name in problem.unknowns) for values in answers}) == len(answers), "an answer twice")
+    different = {tuple(values[name] for name in problem.unknowns) for values in answers}
+    need(len(different) == len(answers), "an answer twice")
     sets = problem.tree(proof["tree"], answers, problem.zero, dict.fromkeys(problem.signed, 1))
     if sets:
         return f"every answer is one of {len(answers)} or lies in one of {sets} sets, each with some of these in it"

@@ -63,3 +63,12 @@ impl Watch for Budget<'_> {
         self.watch.stop() || self.left().is_zero()
     }
 }
+
+/// Passes on the wish to stop, not the progress of a single step of many.
+pub struct StopOnly<'a>(pub &'a dyn Watch);
+
+impl Watch for StopOnly<'_> {
+    fn stop(&self) -> bool {
+        self.0.stop()
+    }
+}

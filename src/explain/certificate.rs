@@ -57,6 +57,14 @@ pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSe
     CertificateSearch { out_of_time: found.out_of_time || exactly.out_of_time, ..exactly }
 }
 
+/// The certificate if these amounts of the motions, found of other loads or other friction, are one here, too.
+pub fn certify_again(problem: &ContactProblem, motions: &FreeMotions, amounts: &[f64]) -> Option<Certificate> {
+    let system = &*problem.system;
+    let pairs = widest_cone_pairs(problem);
+    let load = Load { forces: &system.forces_of(&problem.load), terms: &system.forces_of(&problem.load_terms) };
+    MotionProgram::new(&pairs, motions, load, Instant::now() + BUDGET)?.verified(amounts, None)
+}
+
 /// Forces over the joints with the magnitudes that each was summed from.
 #[derive(Clone, Copy, Debug)]
 pub struct Load<'a> {
@@ -75,12 +83,7 @@ impl Load<'_> {
 /// Looks until `end` for a motion that f64 sums prove, and where it has no room for one that rationals do: what is proved
 /// hangs on the motions, the load and the laws alone.
 pub fn certify_pairs(pairs: &[ConePair], motions: &FreeMotions, load: Load, end: Instant) -> CertificateSearch {
-    let work = motions.work(load.forces, load.terms);
-    let scale = work.iter().fold(0.0, |a: f64, work| a.max(work.value.abs()));
-    if scale == 0.0 {
-        return CertificateSearch::default();
-    }
-    let mut program = MotionProgram { pairs, motions, work, scale, end, out_of_time: false };
+    let Some(mut program) = MotionProgram::new(pairs, motions, load, end) else { return CertificateSearch::default() };
     let certificate = program.with_room().or_else(|| program.confined());
     let out_of_time = certificate.is_none() && program.out_of_time;
     CertificateSearch { certificate, out_of_time }
@@ -135,6 +138,13 @@ fn exactly(row: &[Entry]) -> Vec<(usize, BigRational)> {
 }
 
 impl<'a> MotionProgram<'a> {
+    /// `None` where the loads do no work on any motion.
+    fn new(pairs: &'a [ConePair], motions: &'a FreeMotions, load: Load, end: Instant) -> Option<Self> {
+        let work = motions.work(load.forces, load.terms);
+        let scale = work.iter().fold(0.0, |a: f64, work| a.max(work.value.abs()));
+        (scale > 0.0).then_some(MotionProgram { pairs, motions, work, scale, end, out_of_time: false })
+    }
+
     /// Rows of the tangential joints of a pair.
     fn tangential(&self, pair: usize) -> Vec<&'a [Entry]> {
         self.pairs[pair].tangents.clone().map(|joint| self.motions.row(joint)).collect()

@@ -5,7 +5,7 @@
 
 use super::exact_cycle::{self, Repetition};
 use super::load_parameter::factors_at;
-use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until};
+use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until, limit_words};
 use super::start::{PathError, plane_system};
 use super::static_shakedown::{Static, static_limit, static_shakedown};
 use crate::answer::record::{PairState, Ray};
@@ -256,7 +256,7 @@ pub(super) fn followed(
     };
     let history = follow_until(case, begin, &targets, &mut decided)?;
     let (kind, turns) = judged(&history.stages, history.end == HistoryEnd::Complete, (softest, same));
-    let sentence = said(kind, &turns, &history, same);
+    let sentence = said(kind, &turns, &history, same, (name, ends));
     Ok(Cycle {
         name: name.to_owned(),
         ends,
@@ -350,7 +350,26 @@ fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -
     (kind, turns)
 }
 
-fn said(kind: Kind, turns: &[Turn], history: &History, same: f64) -> String {
+/// Where on its way a load ends that goes to and fro between these values.
+fn collapse_sentence(history: &History, (name, [a, b]): (&str, [f64; 2])) -> String {
+    let HistoryEnd::Limit { stage, t, collapse } = &history.end else { return history.end_sentence() };
+    let met = limit_words(collapse);
+    let (from, to) = if stage % 2 == 1 { (a, b) } else { (b, a) };
+    match stage.checked_sub(1) {
+        None => format!(
+            "before the first cycle, on the way from the unloaded structure to {name} = {}: at {t:.6} of it {met}",
+            short(a)
+        ),
+        Some(half) => format!(
+            "in cycle {} on the way to {name} = {}: at {} {met}",
+            half / 2 + 1,
+            short(to),
+            short(from + t * (to - from))
+        ),
+    }
+}
+
+fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: (&str, [f64; 2])) -> String {
     let count = turns.len();
     match kind {
         Kind::ShakesDown => {
@@ -362,7 +381,7 @@ fn said(kind: Kind, turns: &[Turn], history: &History, same: f64) -> String {
         }
         Kind::Alternates => format!("the slips of cycle {count} go to and fro; {}", recurrence(turns, same)),
         Kind::Ratchets => format!("cycle {count} leaves slips behind; {}", recurrence(turns, same)),
-        Kind::Collapses => format!("in cycle {}: {}", count + 1, history.end_sentence()),
+        Kind::Collapses => collapse_sentence(history, load),
         Kind::Undecided => {
             let difference = |index: usize| turns.get(index).and_then(|turn| turn.difference);
             let rate = match (difference(count.wrapping_sub(1)), difference(count.wrapping_sub(2))) {

@@ -13,9 +13,13 @@ use super::way::Way;
 use crate::answer::record::PairState;
 use crate::model::parameter::ParameterValues;
 use crate::model::quantity::Quantity;
-use crate::solve::Case;
 use crate::solve::case::There;
+use crate::solve::error::SolveError;
 use crate::solve::problem::factors;
+use crate::solve::{Case, Solved};
+
+/// Finds an answer to start from, or tells by a word how the run ended without one.
+pub type Start<'s> = &'s dyn Fn(Case<'_>) -> Result<Result<Solved, &'static str>, SolveError>;
 
 /// A path from a start, with the scenario made ready there.
 struct Leg {
@@ -50,14 +54,21 @@ impl<'a> Route<'a> {
     /// # Errors
     /// No answer at either end or at the present value; see [`PathError`].
     pub fn new(case: Case<'a>, name: &str, range: [f64; 2]) -> Result<Option<Route<'a>>, PathError> {
-        Route::from_end(case, name, range, false)
+        Route::from_start(case, name, range, false, &|case: Case<'_>| Ok(case.solve_pairs()?.if_answer()))
     }
 
-    /// The same, looking for a start at the upper end first: where there are several answers it may be another one.
+    /// The same from an answer that `solve` finds, looking for a start at the upper end first where that is wanted: where there
+    /// are several answers it may be another one.
     ///
     /// # Errors
     /// As [`Route::new`].
-    pub fn from_end(case: Case<'a>, name: &str, range: [f64; 2], upper: bool) -> Result<Option<Route<'a>>, PathError> {
+    pub fn from_start(
+        case: Case<'a>,
+        name: &str,
+        range: [f64; 2],
+        upper: bool,
+        solve: Start<'_>,
+    ) -> Result<Option<Route<'a>>, PathError> {
         if case.prepared.system().is_some_and(|system| system.is_in_space()) {
             return Ok(None);
         }
@@ -74,11 +85,13 @@ impl<'a> Route<'a> {
         let mut how = "";
         for (start, targets) in starts {
             let there = case.at(name, start)?;
-            let solved = there.case(case).solve_pairs()?;
-            if !solved.answer.is_answer() {
-                how = solved.answer.outcome.word();
-                continue;
-            }
+            let solved = match solve(there.case(case))? {
+                Ok(solved) => solved,
+                Err(word) => {
+                    how = word;
+                    continue;
+                }
+            };
             let there = Arc::new(there);
             for target in targets {
                 match Way::follow(there.case(case), &solved, name, target) {

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::sweep::{Following, Row, Sweep};
 use super::sweep_points::Points;
-use crate::watch::Watch;
+use crate::watch::{StopOnly, Watch};
 
 /// Points that are solved before they are written.
 const CHUNK: usize = 256;
@@ -30,15 +30,6 @@ impl Done {
     /// Whether nothing is missing.
     pub fn is_complete(&self) -> bool {
         self.found + self.written == self.total
-    }
-}
-
-/// Passes on the wish to stop, not the progress of a single point.
-struct StopOnly<'a>(&'a dyn Watch);
-
-impl Watch for StopOnly<'_> {
-    fn stop(&self) -> bool {
-        self.0.stop()
     }
 }
 

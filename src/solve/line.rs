@@ -10,12 +10,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::case::Case;
 use super::cold::Extent;
 use super::error::SolveError;
+use super::known_collapses::KnownCollapses;
 use super::prepared::{Geometry, Prepared};
 use super::problem::{contact_problem, factors};
 use super::state::{RunData, Solved};
 use super::warm::WarmStart;
 use crate::answer::pairs::{JointState, joint_state};
-use crate::answer::record::{Answer, Start};
+use crate::answer::record::{Answer, OutcomeKind, Start};
 use crate::answer::strict::is_strict;
 use crate::contact::lcp::contact_lcp_like;
 use crate::contact::problem::ContactProblem;
@@ -47,6 +48,13 @@ impl Case<'_> {
         proofs.0.lock().unwrap_or_else(PoisonError::into_inner).holds(&problem)
     }
 
+    /// Friction of every pair; none of a bare LCP.
+    pub fn frictions(self) -> Vec<f64> {
+        let Case { prepared, values, .. } = self;
+        let problem = prepared.system().map(|system| contact_problem(system, &factors(prepared, values), values));
+        problem.map_or_else(Vec::new, |problem| problem.frictions())
+    }
+
     /// The answer, with the check over the joints; of a structure [`Unbalanced`] tells what is left to check. No words are
     /// made for pivots or for what would stop a collapse.
     ///
@@ -63,8 +71,30 @@ impl Case<'_> {
     /// As [`Case::solve`].
     pub fn solve_pairs(self) -> Result<Solved, SolveError> {
         let solved = self.solve_counted()?;
-        let balanced = solved.unbalanced().is_none_or(|left| Unbalanced::are_balanced(&[&left]) == [true]);
-        if balanced { Ok(solved) } else { self.solve_briefly() }
+        if solved.is_balanced() { Ok(solved) } else { self.solve_briefly() }
+    }
+
+    /// As [`Case::solve_pairs`] for those who look at many places that may lie at the very end of what holds: what is no
+    /// answer is tried again in f64 only, and nothing at all is tried where a known collapse proves that there is none.
+    /// Without an answer the word for how the first run ended.
+    ///
+    /// # Errors
+    /// As [`Case::solve`].
+    pub fn look_for_pairs(self, known: &KnownCollapses) -> Result<Result<Solved, &'static str>, SolveError> {
+        let Case { prepared, values, .. } = self;
+        let plane = prepared.system().filter(|system| !system.is_in_space());
+        let solved = match plane.filter(|_| self.scenario.law_refusal(values).is_none()) {
+            None => self.solve_pairs()?,
+            Some(system) => {
+                let problem = contact_problem(system, &factors(prepared, values), values).under(self.rules);
+                if known.prove(&problem) {
+                    return Ok(Err(OutcomeKind::Ray.word()));
+                }
+                let solved = prepared.solve_in_f64(&problem, self, known)?;
+                if solved.is_balanced() { solved } else { self.solve_briefly()? }
+            }
+        };
+        Ok(solved.if_answer())
     }
 
     /// As [`Case::solve_counted`] where [`Case::is_unique`], from the answer before it on this line where that leads there.
@@ -139,6 +169,16 @@ impl Solved {
             }),
             _ => None,
         }
+    }
+
+    /// Itself, or the word for how the run ended without an answer.
+    pub fn if_answer(self) -> Result<Solved, &'static str> {
+        if self.answer.is_answer() { Ok(self) } else { Err(self.answer.outcome.word()) }
+    }
+
+    /// Whether nothing is left to check, or the forces balance at every node.
+    fn is_balanced(&self) -> bool {
+        self.unbalanced().is_none_or(|left| Unbalanced::are_balanced(&[&left]) == [true])
     }
 
     /// The answer alone, and what its equilibrium is told from where that is still to be looked at.

@@ -28,6 +28,7 @@ pub mod finish;
 pub mod follow;
 mod from_zero_load;
 mod history_answer;
+pub mod known_collapses;
 mod ladder;
 pub mod line;
 pub mod load_rates;

@@ -8,10 +8,12 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::case::Case;
 use super::cold::Extent;
 use super::engines::EXACT_PAIRS;
 use super::error::SolveError;
 use super::from_zero_load::AlongLoad;
+use super::known_collapses::KnownCollapses;
 use super::ladder::{EXACT_BUDGET, Ladder, others};
 use super::prepared::Prepared;
 use super::problem::{contact_problem, factors};
@@ -101,6 +103,35 @@ impl Prepared {
             solved.answer.ray = Some(ray);
         }
         Ok(solved)
+    }
+}
+
+impl Prepared {
+    /// The first run, or the first of the retries in f64 that is an answer, of it the pairs; else the first run. Where it
+    /// is certified that there is none, none is tried, and the motion that proves it becomes a known one.
+    ///
+    /// # Errors
+    /// Those of the attempts.
+    pub(super) fn solve_in_f64(
+        &self,
+        problem: &ContactProblem,
+        Case { rules, watch, .. }: Case<'_>,
+        known: &KnownCollapses,
+    ) -> Result<Solved, SolveError> {
+        let attempt = |rules: Rules, watch: &dyn Watch| self.attempt_contact(problem, (rules, Extent::Counted), watch);
+        let mut first = attempt(rules, watch)?;
+        if first.stands(rules.cone) || !rules.are_default() {
+            return Ok(first);
+        }
+        if let Some(report) = &mut first.ray
+            && certify_ray(report, problem, self.built())
+        {
+            report.certificate.iter().for_each(|found| known.learn(problem, self.built(), found));
+            return Ok(first);
+        }
+        let mut ladder = Ladder::new(first);
+        let found = ladder.climb(&retries(false), EXACT_BUDGET, watch, &attempt, &|_| false)?;
+        Ok(found.unwrap_or_else(|| ladder.without_answer()))
     }
 }
 

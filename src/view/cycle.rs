@@ -128,6 +128,10 @@ pub fn repetition(found: &Repetition) -> Option<String> {
     };
     let map = match proved.map {
         SlipMap::Identical => "; with these schemes a cycle returns every slip as it was".to_owned(),
+        SlipMap::Contracting { share, cycles } if share < f64::MIN_POSITIVE => {
+            let cycle = if cycles == 1 { "a cycle".to_owned() } else { format!("{cycles} cycles") };
+            format!("; with these schemes the slips after {cycle} do not depend on those before")
+        }
         SlipMap::Contracting { share, cycles } => {
             let shrink = if cycles == 1 { "a cycle shrinks".to_owned() } else { format!("{cycles} cycles shrink") };
             format!("; with these schemes {shrink} differences of slips to at most {} of them", short(share))

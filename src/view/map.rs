@@ -199,7 +199,7 @@ pub fn meaning(region: &Region) -> String {
 fn regions(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style) -> io::Result<()> {
     let unit = |axis: usize| labels.units[axis].map(str::to_owned);
     let area_unit = match labels.units {
-        [Some(a), Some(b)] => Some(format!("{a} {b}")),
+        [Some(a), Some(b)] => Some(format!("{a}·{b}")),
         [a, b] => a.or(b).map(str::to_owned),
     };
     let mut columns = vec![
@@ -235,8 +235,12 @@ fn regions(out: &mut dyn Write, map: &Map, labels: &Labels<'_>, style: &Style) -
         }
     }
     let whole: f64 = map.axes.iter().map(|axis| axis.range[1] - axis.range[0]).product();
-    let kept: f64 = map.regions.iter().filter(|region| region.states.is_none()).map(|region| region.area).sum();
-    let line = format!("an answer in {} % of the plane", short(100.0 * (whole - kept) / whole));
+    let held: f64 = map.regions.iter().filter(|region| region.states.is_some()).map(|region| region.area).sum();
+    let line = match map.regions.iter().filter(|region| region.states.is_none()).count() {
+        0 => "an answer in the whole plane".to_owned(),
+        none if none == map.regions.len() => "no answer anywhere in the plane".to_owned(),
+        _ => format!("an answer in {} % of the plane", short(100.0 * held / whole)),
+    };
     writeln!(out, "{}", style.paint(Role::Accent, &line))
 }
 

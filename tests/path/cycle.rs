@@ -128,7 +128,7 @@ fn the_tail_of_a_convergence_is_no_ratchet() {
 /// ```
 /// Pushed by L = 0.8 on both, a goes to and fro while b rests at what it has slipped before: a's bound is
 /// r = (1 + 0.9 b)/2, its stiffness 2, so that a half cycle moves it by (0.8 − 2 r)/2 and loses r times that.
-fn two_nodes() -> stickslip::session::Session {
+pub(super) fn two_nodes() -> stickslip::session::Session {
     let text = r#"{"format": "stickslip/1", "title": "Two nodes", "parameters": {"L": 0.8, "c": 0.9},
         "contact_system": {"pairs": ["a", "b"], "friction": [0.5, 0.5],
             "stiffness": [[2, 0, 0, "c"], [0, 2, "-c", 0], [0, "-c", 2, -1], ["c", 0, -1, 2]],
@@ -142,7 +142,7 @@ fn lost_with(b: f64) -> f64 {
     2.0 * bound * (0.8 - 2.0 * bound) / 2.0
 }
 
-fn lost(cycle: &serde_json::Value) -> f64 {
+pub(super) fn lost(cycle: &serde_json::Value) -> f64 {
     cycle["dissipated"].as_array().unwrap().iter().map(number).sum()
 }
 

@@ -26,3 +26,4 @@ mod stages_in_space;
 mod sweep;
 mod sweep_following;
 mod trace_in_space;
+mod two_nodes;

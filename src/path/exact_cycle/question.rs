@@ -84,6 +84,11 @@ impl Question<'_> {
         self.ends[0].problem
     }
 
+    /// The largest Σ |terms| of a contact force on the way: forces and reserves are known to a few ε of it.
+    pub(super) fn terms(&self) -> f64 {
+        self.stretches.iter().map(|stretch| stretch.end.state.terms.amax()).fold(0.0, f64::max)
+    }
+
     /// The constant of a joint's λ at the beginning of a half, and its change over it.
     pub(super) fn constant(&self, half: usize, joint: usize) -> (&BigRational, BigRational) {
         let [from, to] = [half, 1 - half].map(|end| &self.ends[end].constants[joint]);

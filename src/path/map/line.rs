@@ -1,12 +1,18 @@
 //! One line of the map: the working schemes over one parameter while the other stands still.
 
 use crate::answer::record::{PairState, State};
-use crate::path::route::Route;
+use crate::model::rules::Rules;
+use crate::path::route::{Route, Start};
 use crate::path::start::PathError;
-use crate::solve::Case;
+use crate::solve::error::QuestionError;
+use crate::solve::known_collapses::KnownCollapses;
+use crate::solve::{Case, Solved};
+use crate::watch::StopOnly;
 
 /// Where, within a part without an answer, another answer is looked for, as shares of its length.
 const PROBES: [f64; 3] = [0.25, 0.625, 1.0];
+/// Where an answer is looked for between two ends without one.
+const BETWEEN: [f64; 3] = [0.5, 0.25, 0.75];
 /// The first place is so near to the end of the path, as a share of the range.
 const BESIDE: f64 = 1e-9;
 /// So often a path may begin again behind the end of another.
@@ -90,6 +96,17 @@ fn overlaid(upwards: &[Part], downwards: &[Part], same: f64) -> Vec<Part> {
     parts
 }
 
+/// How other answers than the one that is followed upwards are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Others {
+    /// It is proved that there are none.
+    None,
+    /// Each line is followed from its upper end, too.
+    FromAbove,
+    /// Each line is followed from all answers at its upper end.
+    FromAllAbove,
+}
+
 /// The lines of a map: `along` is followed exactly where that can be done, `across` stands still.
 pub struct Lines<'a> {
     /// The scenario made ready.
@@ -100,16 +117,26 @@ pub struct Lines<'a> {
     pub range: [f64; 2],
     /// The parameter that stands still on a line.
     pub across: &'a str,
+    /// Whether more than one answer is looked for.
+    pub others: Others,
+    /// What proves collapses on the way.
+    pub known: KnownCollapses,
 }
 
-impl Lines<'_> {
+impl<'a> Lines<'a> {
+    /// Lines along the first parameter, within a range of it, the second standing still.
+    pub fn new(case: Case<'a>, (along, range): (&'a str, [f64; 2]), across: &'a str, others: Others) -> Lines<'a> {
+        Lines { case, along, range, across, others, known: KnownCollapses::default() }
+    }
+
     /// The line at a value of `across`, and whether it was followed on exact paths.
     ///
     /// # Errors
     /// A value that the scenario cannot take, an interruption.
     pub fn line(&self, at: f64) -> Result<(Line, bool), PathError> {
         let there = self.case.at(self.across, at)?;
-        let (parts, exact) = self.over(there.case(self.case))?;
+        let step = StopOnly(self.case.watch);
+        let (parts, exact) = self.over(there.case(self.case).watched(&step))?;
         Ok((Line { at, parts }, exact))
     }
 
@@ -118,15 +145,49 @@ impl Lines<'_> {
     /// # Errors
     /// As [`Lines::line`].
     pub fn over(&self, case: Case<'_>) -> Result<(Vec<Part>, bool), PathError> {
-        let (mut upwards, mut downwards) = (Vec::new(), Vec::new());
-        let exact = self.fill(case, (self.range, false), AGAIN, &mut upwards)?;
-        let upwards = self.joined(upwards);
+        let any: Start<'_> = &|case: Case<'_>| case.look_for_pairs(&self.known);
+        let mut upwards = Vec::new();
+        let exact = self.fill(case, (self.range, false), (AGAIN, any), &mut upwards)?;
+        let mut parts = self.joined(upwards);
         // Lines over cells are answers of their own and do not depend on the end they start from.
-        if exact {
-            self.fill(case, (self.range, true), AGAIN, &mut downwards)?;
+        if !exact || self.others == Others::None {
+            return Ok((parts, exact));
         }
-        let downwards = self.joined(downwards);
-        Ok((self.joined(overlaid(&upwards, &downwards, SAME * self.length())), exact))
+        let last = parts.last().map(|part| part.scheme.clone());
+        let others = match self.others {
+            Others::FromAllAbove => self.other_ends(case, last.as_ref())?,
+            _ => Vec::new(),
+        };
+        if others.is_empty() && last == Some(Scheme::NoAnswer) {
+            // The way down would begin at the lower end, too.
+            return Ok((parts, exact));
+        }
+        let mut from = |start: Start<'_>| -> Result<(), PathError> {
+            let mut downwards = Vec::new();
+            self.fill(case, (self.range, true), (AGAIN, start), &mut downwards)?;
+            let downwards = self.joined(downwards);
+            parts = self.joined(overlaid(&parts, &downwards, SAME * self.length()));
+            Ok(())
+        };
+        if others.is_empty() {
+            from(any)?;
+        }
+        for other in others {
+            from(&|_| Ok(Ok(other.clone())))?;
+        }
+        Ok((parts, exact))
+    }
+
+    /// The answers at the upper end in another scheme than this.
+    fn other_ends(&self, case: Case<'_>, here: Option<&Scheme>) -> Result<Vec<Solved>, PathError> {
+        let there = case.at(self.along, self.range[1])?;
+        let all = match there.prepared.all_answers(&there.values, Rules::default(), case.watch) {
+            Ok(all) => all.answers,
+            Err(QuestionError::Interrupted) => return Err(PathError::Interrupted),
+            // Too many for that.
+            Err(_) => return Ok(Vec::new()),
+        };
+        Ok(all.into_iter().filter(|other| here != Some(&scheme(&other.answer.pairs))).collect())
     }
 
     fn length(&self) -> f64 {
@@ -139,16 +200,15 @@ impl Lines<'_> {
         &self,
         case: Case<'_>,
         (range, upper): ([f64; 2], bool),
-        again: usize,
+        (again, start): (usize, Start<'_>),
         parts: &mut Vec<Part>,
     ) -> Result<bool, PathError> {
-        let route = match Route::from_end(case, self.along, range, upper) {
+        let route = match Route::from_start(case, self.along, range, upper, start) {
             Ok(Some(route)) if !route.stretches.is_empty() => route,
             Ok(None) => return self.cells(case, range, parts).map(|()| false),
             // No answer, or one that stands at its very end.
             Ok(Some(_)) | Err(PathError::NoStart { .. }) => {
-                parts.push(Part { from: range[0], to: range[1], scheme: Scheme::NoAnswer });
-                return Ok(true);
+                return self.between(case, (range, upper), again, parts).map(|()| true);
             }
             Err(error) => return Err(error),
         };
@@ -167,6 +227,33 @@ impl Lines<'_> {
         Ok(true)
     }
 
+    fn has_answer(&self, case: Case<'_>, at: f64) -> Result<bool, PathError> {
+        Ok(case.at(self.along, at)?.case(case).look_for_pairs(&self.known)?.is_ok())
+    }
+
+    /// Between two ends without an answer: none, unless one is found at one of a few places.
+    fn between(
+        &self,
+        case: Case<'_>,
+        (range, upper): ([f64; 2], bool),
+        again: usize,
+        parts: &mut Vec<Part>,
+    ) -> Result<(), PathError> {
+        let [from, to] = range;
+        let any: Start<'_> = &|case: Case<'_>| case.look_for_pairs(&self.known);
+        if again > 0 && to - from > BESIDE * self.length() {
+            for share in BETWEEN {
+                let at = from + share * (to - from);
+                if self.has_answer(case, at)? {
+                    self.fill(case, ([from, at], upper), (again - 1, any), parts)?;
+                    return self.fill(case, ([at, to], upper), (again - 1, any), parts).map(drop);
+                }
+            }
+        }
+        parts.push(Part { from, to, scheme: Scheme::NoAnswer });
+        Ok(())
+    }
+
     /// From the end of a path to the end of the range: no answer, unless one is found at one of a few places.
     fn beyond(
         &self,
@@ -177,21 +264,22 @@ impl Lines<'_> {
     ) -> Result<(), PathError> {
         let span = |a: f64, b: f64| [a.min(b), a.max(b)];
         let nearest = BESIDE * self.length();
+        let any: Start<'_> = &|case: Case<'_>| case.look_for_pairs(&self.known);
         let probes = std::iter::once(nearest / (to - from).abs()).chain(PROBES).filter(|share| *share <= 1.0);
         let probes = probes.filter(|_| again > 0 && (to - from).abs() > nearest);
         for (index, share) in probes.enumerate() {
             let at = from + share * (to - from);
-            if !case.at(self.along, at)?.case(case).solve_pairs()?.answer.is_answer() {
+            if !self.has_answer(case, at)? {
                 continue;
             }
             // Both ways from there; what is before it has none at its other end.
             let [low, high] = span(at, to);
             if low < high {
-                self.fill(case, ([low, high], upper), again - 1, parts)?;
+                self.fill(case, ([low, high], upper), (again - 1, any), parts)?;
             }
             if index > 0 {
                 let beside = from + nearest * (to - from).signum();
-                return self.fill(case, (span(beside, at), upper), again - 1, parts).map(drop);
+                return self.fill(case, (span(beside, at), upper), (again - 1, any), parts).map(drop);
             }
             return Ok(());
         }
@@ -203,8 +291,8 @@ impl Lines<'_> {
     /// Without an exact path: answers of their own at some places, each change between two of them narrowed.
     fn cells(&self, case: Case<'_>, [low, high]: [f64; 2], parts: &mut Vec<Part>) -> Result<(), PathError> {
         let look = |at: f64| -> Result<(f64, Scheme), PathError> {
-            let solved = case.at(self.along, at)?.case(case).solve_pairs()?;
-            let found = if solved.answer.is_answer() { scheme(&solved.answer.pairs) } else { Scheme::NoAnswer };
+            let solved = case.at(self.along, at)?.case(case).look_for_pairs(&self.known)?;
+            let found = solved.map_or(Scheme::NoAnswer, |solved| scheme(&solved.answer.pairs));
             Ok((at, found))
         };
         let mut last = look(low)?;

@@ -7,29 +7,34 @@
 
 mod line;
 mod panel;
+mod regions;
 
 use serde::Serialize;
 
-pub use line::{Lines, Part, Scheme};
+pub use line::{Lines, Others, Part, Scheme};
 pub use panel::{LeftOut, Panel};
 
 use self::panel::Cutter;
+use self::regions::regions;
 use super::envelope::Axis;
 use super::quantity::{Facts, Value};
 use super::route::Route;
 use super::start::{PathError, plane_system};
 use crate::answer::record::{RayClass, State, Verdict};
-use crate::model::groups::Groups;
+use crate::model::jet::Dependence;
 use crate::model::quantity::Quantity;
 use crate::model::rules::Rules;
+use crate::model::uses::Redone;
 use crate::solve::Case;
+use crate::solve::line::Proofs;
+use crate::watch::StopOnly;
 
 /// Other answers are looked for in maps of at most so many pairs …
 const ENUMERATED_PAIRS: usize = 8;
 /// … and so many regions.
 const ENUMERATED_REGIONS: usize = 64;
-/// Parts of neighbouring panels that have less than this share of the range in common do not touch.
-const TOUCHING: f64 = 1e-9;
+/// All answers at the upper end of each line are looked for in maps of at most so many pairs.
+const ENUMERATED_ENDS: usize = 4;
 
 /// A region: one scheme, connected.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -78,6 +83,8 @@ pub struct Map {
     pub along: usize,
     /// Whether every bound lies on an exact path.
     pub exact: bool,
+    /// How other answers were looked for.
+    pub others: Others,
     /// Whether all places where the order of the schemes changes were found; otherwise why not, and the number of lines by
     /// which it is drawn.
     pub left_out: Option<(LeftOut, usize)>,
@@ -122,12 +129,14 @@ pub fn map(case: Case<'_>, axes: [Axis; 2], quantity: Option<&Quantity>) -> Resu
     plane_system(case.prepared, "map", "`sweep P A..B N Q C..D N` gives the answers on a grid of both")?;
     let along = along(case, &axes)?;
     let across = &axes[1 - along];
-    let lines = Lines { case, along: &axes[along].name, range: axes[along].range, across: &across.name };
+    let others = others(case, &axes)?;
+    let lines = Lines::new(case, (&axes[along].name, axes[along].range), &across.name, others);
     let mut cutter = Cutter::new(&lines, across.range);
     let panels = cutter.panels()?;
     let (exact, left_out) = (cutter.exact, cutter.left_out);
-    let region_of = connected(&panels, axes[along].range);
-    let mut map = Map { axes, regions: Vec::new(), panels, region_of, along, exact, left_out, notes: Vec::new() };
+    let region_of = regions(&panels, axes.each_ref().map(|axis| axis.range), along);
+    let mut map =
+        Map { axes, regions: Vec::new(), panels, region_of, along, exact, others, left_out, notes: Vec::new() };
     map.describe(case, quantity)?;
     map.say(case);
     Ok(map)
@@ -151,27 +160,34 @@ fn along(case: Case<'_>, axes: &[Axis; 2]) -> Result<usize, PathError> {
     Ok(best.0)
 }
 
-/// The region of each part of each panel, numbered from the left below.
-fn connected(panels: &[Panel], range: [f64; 2]) -> Vec<Vec<usize>> {
-    let mut count = 0;
-    let start = |panel: &Panel| {
-        count += panel.areas.len();
-        count - panel.areas.len()
-    };
-    let starts: Vec<usize> = panels.iter().map(start).collect();
-    let mut groups = Groups::new(count);
-    for (k, two) in panels.windows(2).enumerate() {
-        let (below, above) = (&two[0].lines[two[0].lines.len() - 1], &two[1].lines[0]);
-        for (i, a) in below.parts.iter().enumerate() {
-            for (j, b) in above.parts.iter().enumerate().filter(|(_, b)| b.scheme == a.scheme) {
-                if a.to.min(b.to) - a.from.max(b.from) > TOUCHING * (range[1] - range[0]) {
-                    groups.join(starts[k] + i, starts[k + 1] + j);
-                }
-            }
-        }
-    }
-    let mut numbers = groups.numbers(0..count).into_iter();
-    panels.iter().map(|panel| numbers.by_ref().take(panel.areas.len()).collect()).collect()
+/// How other answers are to be looked for.
+fn others(case: Case<'_>, axes: &[Axis; 2]) -> Result<Others, PathError> {
+    let pairs = case.prepared.system().map_or(0, |system| system.pairs.len());
+    let otherwise = if pairs <= ENUMERATED_ENDS { Others::FromAllAbove } else { Others::FromAbove };
+    let corner =
+        |i: usize, j: usize| case.at_all(&[(&axes[0].name, axes[0].range[i]), (&axes[1].name, axes[1].range[j])]);
+    let corners = [corner(0, 0)?, corner(1, 0)?, corner(0, 1)?, corner(1, 1)?];
+    let is_stiff = corners[1..]
+        .iter()
+        .all(|there| case.scenario.uses.between(&corners[0].values, &there.values) != Redone::Stiffness);
+    let bends = axes.iter().any(|axis| friction_bends(case, &axis.name));
+    // Friction is largest in a corner, if it neither bends nor is larger for some pairs in one and for others in another.
+    let frictions: Vec<Vec<f64>> = corners.iter().map(|there| there.case(case).frictions()).collect();
+    let exceeds = |one: &[f64], other: &[f64]| one.iter().zip(other).all(|(one, other)| one >= other);
+    let most = (0..4).find(|k| frictions.iter().all(|other| exceeds(&frictions[*k], other)));
+    let Some(most) = most.filter(|_| is_stiff && !bends) else { return Ok(otherwise) };
+    let there = &corners[most];
+    let proved = Proofs::of(&there.prepared).is_some_and(|proofs| there.case(case).is_unique(&proofs));
+    Ok(if proved { Others::None } else { otherwise })
+}
+
+/// Whether the friction of a pair depends on a parameter in another way than a + b θ.
+fn friction_bends(Case { prepared, values, .. }: Case<'_>, name: &str) -> bool {
+    let along = values.along(name);
+    prepared.system().is_some_and(|system| {
+        let mut frictions = system.pairs.iter().filter_map(|pair| pair.law.friction());
+        frictions.any(|friction| along.dependence(friction) == Dependence::Nonlinear)
+    })
 }
 
 /// A, B, …, Z, AA, …
@@ -197,7 +213,7 @@ impl Map {
             .unwrap_or_default();
         let enumerated = ids.len() <= ENUMERATED_PAIRS && count <= ENUMERATED_REGIONS;
         for region in 0..count {
-            case.watch.progress("regions", region as f64 / count as f64);
+            case.watch.progress(&format!("region {} of {count}", region + 1), region as f64 / count as f64);
             let mut area = 0.0;
             let mut largest = (f64::NEG_INFINITY, 0, 0);
             for (number, (panel, regions)) in self.panels.iter().zip(&self.region_of).enumerate() {
@@ -248,6 +264,8 @@ impl Map {
         enumerated: bool,
         quantity: Option<&Quantity>,
     ) -> Result<(), PathError> {
+        let step = StopOnly(case.watch);
+        let case = case.watched(&step);
         let settings = [(self.axes[0].name.as_str(), region.at[0]), (self.axes[1].name.as_str(), region.at[1])];
         let there = case.at_all(&settings)?;
         if region.states.is_none() {
@@ -293,13 +311,27 @@ impl Map {
                 self.axes[self.along].name
             ));
         }
-        if pairs > ENUMERATED_PAIRS || self.regions.len() > ENUMERATED_REGIONS {
-            self.notes.push(format!(
-                "other answers were looked for only by following each line from both ends (at the marked places all of them \
-                 are counted for up to {ENUMERATED_PAIRS} pairs and \
-                 {ENUMERATED_REGIONS} regions)"
-            ));
-        }
+        let counted = match pairs > ENUMERATED_PAIRS || self.regions.len() > ENUMERATED_REGIONS {
+            true => format!(
+                "; at the marked places all of them are counted for up to {ENUMERATED_PAIRS} pairs and {ENUMERATED_REGIONS} \
+                 regions only"
+            ),
+            false => "; at the marked places all of them are counted".to_owned(),
+        };
+        self.notes.push(match self.others {
+            Others::None => {
+                "nowhere is there more than one state of forces: that is proved for all of this friction, whatever the loads"
+                    .to_owned()
+            }
+            Others::FromAllAbove if self.exact => format!(
+                "other answers were looked for by following each line from its lower end and from all answers at its upper \
+                 one: of those that reach neither end some may be missing{counted}"
+            ),
+            _ if self.exact => format!(
+                "other answers were looked for only by following each line from both ends: others may be there{counted}"
+            ),
+            _ => format!("other answers were not looked for along the lines{counted}"),
+        });
         if self.regions.iter().any(Region::has_several) {
             self.notes.push(
                 "hatched: more than one answer is possible; the map shows the one that is followed from the lower end \

@@ -1,5 +1,7 @@
 //! Strips of the map in which every line passes the same schemes in the same order, and the areas of their parts.
 
+use rayon::prelude::*;
+
 use super::line::{Line, Lines};
 use crate::path::start::PathError;
 use crate::text::words::short;
@@ -152,13 +154,18 @@ impl<'a> Cutter<'a> {
         }
         let ([low, high], [begun, ended], lines) = (self.range, self.pass, self.lines);
         let first = self.seen.len();
-        for at in places {
+        let look = |at: &f64| {
             if lines.case.watch.stop() {
                 return Err(PathError::Interrupted);
             }
             let done = begun + (at - low) / (high - low) * (ended - begun);
             lines.case.watch.progress(&format!("{} = {}", lines.across, short(*at)), done);
-            let (line, exact) = lines.line(*at)?;
+            lines.line(*at)
+        };
+        // Those before one that was stopped are kept.
+        let found: Vec<Result<(Line, bool), PathError>> = places.par_iter().map(look).collect();
+        for found in found {
+            let (line, exact) = found?;
             self.exact &= exact;
             self.seen.push(line);
         }

@@ -7,7 +7,7 @@ use super::statistics::{Found, QUANTILES, Share, Spread, Words, bars};
 use crate::answer::record::Verdict;
 use crate::model::quantity::Quantity;
 use crate::path::envelope::Axis;
-use crate::path::map::{LeftOut, Lines, Scheme, map};
+use crate::path::map::{LeftOut, Lines, Others, Scheme, map};
 use crate::path::profile::{Piece, Shape, number, profile, zero};
 use crate::path::quantity::Value;
 use crate::path::route::Route;
@@ -59,7 +59,7 @@ pub fn of_one(case: Case<'_>, variable: &Variable, quantities: &[Quantity]) -> R
     if !is_followed(case, name, range)? {
         return Ok(None);
     }
-    let lines = Lines { case, along: name, range, across: name };
+    let lines = Lines::new(case, (name, range), name, Others::FromAbove);
     let (parts, exact) = lines.over(case)?;
     if !exact {
         return Ok(None);

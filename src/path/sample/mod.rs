@@ -23,6 +23,7 @@ use super::sweep::{Format, Sweep};
 use crate::model::quantity::{OfAnswer, Quantity};
 use crate::model::scenario::Scenario;
 use crate::solve::Case;
+use crate::text::number::short;
 
 /// Points drawn where no number is given.
 pub const DRAWS: usize = 2000;
@@ -115,7 +116,8 @@ impl Request {
                     return Err(format!("sample: {name} must not be negative, and {whole} is"));
                 }
                 notes.push(format!(
-                    "{name} must not be negative: {whole} is cut off below 0, where a share of {cut:.2e} was"
+                    "{name} must not be negative: {whole} is cut off below 0, where a share of {} of it lies",
+                    short(cut)
                 ));
             }
         }

@@ -23,6 +23,7 @@ mod walk;
 
 pub(in crate::path) use released::loose_motions;
 
+pub(super) use record::limit_words;
 pub use record::{Energy, History, HistoryEnd, Moment, StageResult};
 
 use std::time::Instant;

@@ -118,11 +118,7 @@ impl History {
         match &self.end {
             HistoryEnd::Complete => "all stages were followed".to_owned(),
             HistoryEnd::Limit { stage, t, collapse } => {
-                let proof = match collapse.verdict {
-                    Some(Verdict::Certified) => "the limit load is reached",
-                    _ => "no rates and no other state lead on, which is not proved to be the limit load",
-                };
-                format!("stage {} cannot be completed: at {:.6} of it {proof} ({})", stage + 1, t, collapse.mode)
+                format!("stage {} cannot be completed: at {t:.6} of it {}", stage + 1, limit_words(collapse))
             }
         }
     }
@@ -157,4 +153,13 @@ impl History {
         });
         Some(mixed.collect())
     }
+}
+
+/// What ends a history, and how it moves there.
+pub(in crate::path) fn limit_words(collapse: &Ray) -> String {
+    let proof = match collapse.verdict {
+        Some(Verdict::Certified) => "the limit load is reached",
+        _ => "no rates and no other state lead on, which is not proved to be the limit load",
+    };
+    format!("{proof} ({})", collapse.mode)
 }
