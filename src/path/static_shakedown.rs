@@ -69,10 +69,12 @@ pub(super) fn units(force: f64, stiffness: f64) -> (f64, f64) {
 fn refusal(problem: &ContactProblem) -> Option<Static> {
     let system = &*problem.system;
     if system.is_in_space() {
-        return Some(Static::Inapplicable("its linear programme knows slips in the plane only".to_owned()));
+        let why = "the static theorem of shakedown was not asked, its linear programme knows slips in the plane only";
+        return Some(Static::Inapplicable(why.to_owned()));
     }
     if system.force_form.is_some() {
-        let why = "joints repeat one another, so that contact forces are not unique";
+        let why = "joints repeat one another, so that contact forces are not unique and the static theorem of shakedown does \
+                   not hold";
         return Some(Static::Inapplicable(why.to_owned()));
     }
     let Some((i, j)) = coupled(problem) else {
@@ -80,7 +82,9 @@ fn refusal(problem: &ContactProblem) -> Option<Static> {
         return (count > MOST_PAIRS).then_some(Static::TooLarge(count));
     };
     let [pressed, slipping] = [i, j].map(|pair| &system.pairs[pair].id);
-    Some(Static::Inapplicable(format!("a slip of {slipping} changes the contact force of {pressed}")))
+    Some(Static::Inapplicable(format!(
+        "a slip of {slipping} changes the contact force of {pressed}, so that the static theorem of shakedown does not hold"
+    )))
 }
 
 /// A pair whose contact force depends on the slip of another one.

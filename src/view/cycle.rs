@@ -150,9 +150,7 @@ pub fn repetition(found: &Repetition) -> Option<String> {
 pub fn every_start(found: &Static) -> Option<String> {
     match found {
         Static::NotAsked => None,
-        Static::Inapplicable(why) => Some(format!(
-            "another start may do otherwise: {why}, so that the static theorem of shakedown does not hold"
-        )),
+        Static::Inapplicable(why) => Some(format!("another start may do otherwise: {why}")),
         Static::TooLarge(pairs) => Some(format!(
             "the static theorem of shakedown was not asked of other starts: {pairs} pairs are too many, {MOST_PAIRS} are not"
         )),

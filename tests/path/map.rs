@@ -80,6 +80,32 @@ fn two_loads_give_polygons() {
     near(&region(&map, &[("a", "slip+")])["area"], 3.0, 1e-9);
     near(&region(&map, &[("a", "slip-")])["area"], 3.0, 1e-9);
     near(&region(&map, &[("a", "open")])["area"], 4.0, 1e-9);
+    assert_eq!(map["regions"].as_array().unwrap().len(), 4);
+    assert!(notes(&map).contains("nowhere is there more than one state of forces: that is proved"), "{map}");
+}
+
+fn notes(map: &Value) -> String {
+    map["notes"].as_array().unwrap().iter().filter_map(Value::as_str).collect::<Vec<_>>().join("; ")
+}
+
+/// As below, over both loads with f = 1.5: sticking for |T| < 1.5 N, opening for T > 1.25 N, slip + for T < −1.5 N. Both are
+/// possible between the lines to T = 2, also where the upper end T = 2 sticks as well: ∫ min(1.5 N, 2) − 1.25 N dN from 0 to
+/// 1.6. Where lines meet there is no region of no area.
+#[test]
+fn other_answers_are_found_where_both_ends_stick() {
+    let mut session = session(load_text("block.json", &block(2.4), None).unwrap_or_else(|error| panic!("{error}")));
+    session.execute("set f 1.5", &mut quiet(&mut Vec::new())).unwrap();
+    let map = report(&mut session, "map T -2..2 N -1..2").unwrap();
+    assert_eq!(map["regions"].as_array().unwrap().len(), 4, "{map}");
+    let several = map["regions"].as_array().unwrap().iter().find(|region| !region["other"].is_null()).unwrap();
+    assert_eq!((&several["states"]["a"], &several["other"]["a"]), (&"stick".into(), &"open".into()));
+    let both =
+        0.25 / 2.0 * (4.0_f64 / 3.0).powi(2) + 2.0 * (1.6 - 4.0 / 3.0) - 0.625 * (1.6 * 1.6 - (4.0_f64 / 3.0).powi(2));
+    // Two answers nearer than 1e-8 are one: there a bound is known to that.
+    near(&several["area"], both, 1e-8);
+    assert_eq!(several["answers"], 3);
+    assert!(notes(&map).contains("from all answers at its upper one"), "{map}");
+    assert!((total(&map) - 12.0).abs() < 1e-9);
 }
 
 /// Two blocks with the same friction, the first pushed by T, coupled by k; its slip −z adds c z to its pressure:
@@ -120,6 +146,24 @@ fn several_answers_are_found_from_both_ends() {
     near(&both["area"], (1.8 * 1.8 - 1.3 * 1.3) / 2.0 - 1.25 * 0.5, 1e-9);
     near(&region(&map, &[("a", "open")])["area"], 2.0 * 0.5 - (1.8 * 1.8 - 1.3 * 1.3) / 2.0, 1e-9);
     assert!(text(&mut session, "map T 0..2 f 1.3..1.8").contains("hatched: more than one answer"));
+}
+
+/// The arch of 21 blocks, 44 pairs: with so much friction it turns about joints and does not slide when it falls, at 0.148316546 g
+/// (limit analysis by an independent linear programme, eight digits) whatever the friction.
+#[test]
+fn an_arch_of_44_pairs_is_mapped_to_its_end() {
+    let mut session = session(embedded::load("arch").expect("embedded"));
+    let map = report(&mut session, "map quake 0.14..0.16 f 0.9..1").unwrap();
+    assert_eq!((&map["exact"], &map["complete"]), (&true.into(), &true.into()), "{map}");
+    let area = |outcome: &str| -> f64 {
+        let regions = map["regions"].as_array().unwrap().iter().filter(|region| region["outcome"] == outcome);
+        regions.map(|region| number(&region["area"])).sum()
+    };
+    assert!((area("answer") - 0.1 * 0.008_316_546).abs() < 1e-10, "{map}");
+    assert!((area("answer") + area("ray") - 0.1 * 0.02).abs() < 1e-12, "{map}");
+    for region in map["regions"].as_array().unwrap().iter().filter(|region| region["outcome"] == "ray") {
+        assert_eq!(region["verdict"], "certified", "{region}");
+    }
 }
 
 /// What cannot be mapped is refused in words, and nothing is exported before there is a map.

@@ -350,7 +350,13 @@ fn what_is_altered_is_rejected_or_still_a_proof_of_the_same() {
     }
     let said = checked(&cases);
     let mut accepted = 0;
+    let mut kinds: BTreeMap<String, [usize; 2]> = BTreeMap::new();
     for (((proof, system), original), said) in cases.iter().zip(&originals).zip(&said) {
+        let claim = original["claim"].as_str().unwrap_or("another system");
+        let none = original["answers"].as_array().is_some_and(Vec::is_empty);
+        let of = if system.contains("contact_system") { "contact" } else { "lcp" };
+        let kind = format!("{of}: {}", if none { "no answer" } else { claim });
+        kinds.entry(kind).or_default()[usize::from(said.is_ok())] += 1;
         let Ok(words) = said else { continue };
         accepted += 1;
         let about_other = original["claim"] == "answers" && original["system"] != Hash::of(system).long();
@@ -362,6 +368,22 @@ fn what_is_altered_is_rejected_or_still_a_proof_of_the_same() {
         assert!(holds, "{words}\n{proof}\n{system}");
     }
     assert!(cases.len() > 1500 && accepted * 5 < cases.len(), "{accepted} of {}", cases.len());
+    // Every kind of proof is among them, and most of what is altered of it is rejected.
+    for kind in [
+        "contact: answer",
+        "contact: collapse",
+        "contact: answers",
+        "contact: no answer",
+        "lcp: answer",
+        "lcp: answers",
+        "lcp: no answer",
+        "contact: another system",
+        "lcp: another system",
+    ] {
+        let [rejected, accepted] = kinds.get(kind).copied().unwrap_or_default();
+        assert!(rejected >= 20 && accepted < rejected, "{kind}: {kinds:?}");
+    }
+    assert_eq!((kinds["contact: another system"][1], kinds["lcp: another system"][1]), (0, 0), "{kinds:?}");
 }
 
 /// Whether the answers of a proof are those that `enumerate` finds of its system, to rounding.

@@ -73,6 +73,14 @@ fn scheme(pairs: &[PairState]) -> Scheme {
     Scheme::Pairs(pairs.iter().map(|pair| pair.state).collect())
 }
 
+/// Pairs that touch in one of two schemes only, and those that do something else.
+fn farness(here: Option<&Scheme>, there: &[PairState]) -> (usize, usize) {
+    let Some(Scheme::Pairs(here)) = here else { return (0, 0) };
+    let pairs = || here.iter().zip(there);
+    let opens = pairs().filter(|(a, b)| (**a == State::Open) != (b.state == State::Open)).count();
+    (opens, pairs().filter(|(a, b)| **a != b.state).count())
+}
+
 /// The parts of both ways over a line: where they differ there is more than one answer. Bounds nearer than `same` are
 /// one.
 fn overlaid(upwards: &[Part], downwards: &[Part], same: f64) -> Vec<Part> {
@@ -187,7 +195,11 @@ impl<'a> Lines<'a> {
             // Too many for that.
             Err(_) => return Ok(Vec::new()),
         };
-        Ok(all.into_iter().filter(|other| here != Some(&scheme(&other.answer.pairs))).collect())
+        let mut others: Vec<Solved> =
+            all.into_iter().filter(|other| here != Some(&scheme(&other.answer.pairs))).collect();
+        // The farthest first: what lies between two answers mostly is unstable.
+        others.sort_by_key(|other| std::cmp::Reverse(farness(here, &other.answer.pairs)));
+        Ok(others)
     }
 
     fn length(&self) -> f64 {

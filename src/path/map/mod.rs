@@ -26,6 +26,7 @@ use crate::model::quantity::Quantity;
 use crate::model::rules::Rules;
 use crate::model::uses::Redone;
 use crate::solve::Case;
+use crate::solve::error::QuestionError;
 use crate::solve::line::Proofs;
 use crate::watch::StopOnly;
 
@@ -165,8 +166,13 @@ fn others(case: Case<'_>, axes: &[Axis; 2]) -> Result<Others, PathError> {
     let pairs = case.prepared.system().map_or(0, |system| system.pairs.len());
     let otherwise = if pairs <= ENUMERATED_ENDS { Others::FromAllAbove } else { Others::FromAbove };
     let corner =
-        |i: usize, j: usize| case.at_all(&[(&axes[0].name, axes[0].range[i]), (&axes[1].name, axes[1].range[j])]);
-    let corners = [corner(0, 0)?, corner(1, 0)?, corner(0, 1)?, corner(1, 1)?];
+        |k: usize| case.at_all(&[(&axes[0].name, axes[0].range[k % 2]), (&axes[1].name, axes[1].range[k / 2])]);
+    let corners = match (0..4).map(corner).collect::<Result<Vec<_>, _>>() {
+        Ok(corners) => corners,
+        // What a corner cannot take, the lines beside it may.
+        Err(QuestionError::Refused(_)) => return Ok(otherwise),
+        Err(error) => return Err(error.into()),
+    };
     let is_stiff = corners[1..]
         .iter()
         .all(|there| case.scenario.uses.between(&corners[0].values, &there.values) != Redone::Stiffness);
@@ -332,6 +338,9 @@ impl Map {
             ),
             _ => format!("other answers were not looked for along the lines{counted}"),
         });
+        if self.regions.len() > 26 {
+            self.notes.push("where a letter is two, the picture shows its last".to_owned());
+        }
         if self.regions.iter().any(Region::has_several) {
             self.notes.push(
                 "hatched: more than one answer is possible; the map shows the one that is followed from the lower end \
