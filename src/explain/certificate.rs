@@ -59,6 +59,9 @@ pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSe
 
 /// The certificate if these amounts of the motions, found of other loads or other friction, are one here, too.
 pub fn certify_again(problem: &ContactProblem, motions: &FreeMotions, amounts: &[f64]) -> Option<Certificate> {
+    if amounts.len() != motions.count() {
+        return None;
+    }
     let system = &*problem.system;
     let pairs = widest_cone_pairs(problem);
     let load = Load { forces: &system.forces_of(&problem.load), terms: &system.forces_of(&problem.load_terms) };

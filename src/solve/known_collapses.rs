@@ -33,8 +33,12 @@ impl KnownCollapses {
         known.amounts.iter().any(|amounts| certify_again(problem, &known.motions, amounts).is_some())
     }
 
-    /// Keeps the motion that proved a collapse of this problem; those of another system are forgotten.
+    /// Keeps the motion that proved a collapse of this problem, where it is told by its free motions; those of another
+    /// system are forgotten.
     pub(super) fn learn(&self, problem: &ContactProblem, built: Built<'_>, certificate: &Certificate) {
+        if certificate.amounts.is_empty() {
+            return;
+        }
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if known.as_ref().is_none_or(|known| !Arc::ptr_eq(&known.system, &problem.system)) {
             *known = Some(Known {

@@ -302,7 +302,7 @@ fn a_pair_that_moves_while_it_is_open_shakes_down() {
 }
 
 /// In rationals: the beam goes to and fro, the strip ratchets by -2 s (0.05 − 8.8 / EA) however its slips begin, the sliders
-/// contract, two nodes keep what they have slipped; on a limit of its own nothing is claimed.
+/// contract, two nodes keep what they have slipped. On a limit it is proved where the numbers are stored without rounding.
 #[test]
 fn what_repeats_is_proved_in_rationals() {
     let mut beam = beam();
@@ -315,6 +315,10 @@ fn what_repeats_is_proved_in_rationals() {
         assert_eq!(proof["proved"], true, "{pull}: {proof}");
         assert!(number(&proof["net"]) < 1e-25 && number(&proof["distance"]) < 1e-12, "{pull}: {proof}");
     }
+    // Exactly at its limit: as stored c6 is beyond it by a few ε of 100, and that is said.
+    let found = report(&mut beam, "cycle F2 0..60").unwrap();
+    let sentence = found["proof"]["sentence"].as_str().unwrap();
+    assert!(found["proof"]["proved"] == false && sentence.contains("nothing but rounding: there the cycle comes to a limit"));
     let shown = text(&mut beam, "cycle F2 0..61");
     assert!(shown.contains("proved in rationals, for R and RF as they are stored"), "{shown}");
     let mut strip = session(embedded::load("ratchet").expect("embedded"));
@@ -322,6 +326,11 @@ fn what_repeats_is_proved_in_rationals() {
     assert_eq!(found["proof"]["proved"], true, "{}", found["proof"]);
     near(&found["proof"]["net"], 0.0824, 1e-14);
     let mut nodes = two_nodes();
+    // Without coupling every number is stored as it is: at L = 1 both nodes come to both their limits, to the last digit.
+    report(&mut nodes, "set c 0").unwrap();
+    let found = report(&mut nodes, "cycle L 0..1").unwrap();
+    assert_eq!((&found["kind"], &found["proof"]["proved"]), (&"shakes-down".into(), &true.into()), "{found}");
+    report(&mut nodes, "set c 0.9").unwrap();
     for push in ["0.6", "0.8", "0.95", "1.2"] {
         let proof = &report(&mut nodes, &format!("cycle L 0..{push}")).unwrap()["proof"];
         assert_eq!((&proof["proved"], &proof["map"]), (&true.into(), &"identical".into()), "{push}: {proof}");
