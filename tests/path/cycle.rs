@@ -318,7 +318,10 @@ fn what_repeats_is_proved_in_rationals() {
     // Exactly at its limit: as stored c6 is beyond it by a few ε of 100, and that is said.
     let found = report(&mut beam, "cycle F2 0..60").unwrap();
     let sentence = found["proof"]["sentence"].as_str().unwrap();
-    assert!(found["proof"]["proved"] == false && sentence.contains("nothing but rounding: there the cycle comes to a limit"));
+    assert!(
+        found["proof"]["proved"] == false
+            && sentence.contains("nothing but rounding: there the cycle comes to a limit")
+    );
     let shown = text(&mut beam, "cycle F2 0..61");
     assert!(shown.contains("proved in rationals, for R and RF as they are stored"), "{shown}");
     let mut strip = session(embedded::load("ratchet").expect("embedded"));
