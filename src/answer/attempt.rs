@@ -36,6 +36,15 @@ pub enum AttemptEngine {
     Enumeration,
     /// The path from zero load along the growing load.
     LoadPath,
+    /// Lemke's algorithm on a bimatrix game stated with the values of its players as unknowns.
+    Bimatrix,
+}
+
+impl AttemptEngine {
+    /// Whether what it finds comes without pivots of the problem itself.
+    pub fn is_without_pivots(self) -> bool {
+        matches!(self, AttemptEngine::Enumeration | AttemptEngine::Bimatrix)
+    }
 }
 
 /// Rules of a try.
@@ -124,6 +133,7 @@ impl fmt::Display for AttemptEngine {
             AttemptEngine::Lemke(engine) => engine.fmt(f),
             AttemptEngine::Enumeration => f.write_str("enumeration"),
             AttemptEngine::LoadPath => f.write_str("load-path"),
+            AttemptEngine::Bimatrix => f.write_str("bimatrix"),
         }
     }
 }

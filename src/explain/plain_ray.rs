@@ -2,6 +2,7 @@
 
 use super::sentence::plain_name;
 use crate::answer::record::{Direction, Ray, RayClass, VariableRate, Verdict};
+use crate::lcp::bimatrix::Bimatrix;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::RayDirection;
 use crate::lcp::pivot::PivotLog;
@@ -54,7 +55,7 @@ impl PlainRay {
                 if (0..lcp.size()).any(|r| lcp.q[r] < 0.0 && !blocks_nothing(lcp, r)) {
                     (format!("{column} (another row may need p first under another d)."), false)
                 } else {
-                    let game = if is_bimatrix(lcp) { GAME } else { "" };
+                    let game = if Bimatrix::of(lcp).is_some() { GAME } else { "" };
                     (format!("{column}, and every other row with q < 0 is of this kind.{game}"), true)
                 }
             }
@@ -104,40 +105,14 @@ impl PlainRay {
     }
 }
 
-/// How to state a bimatrix game so that Lemke's algorithm ends in an equilibrium.
-const GAME: &str = " This is a bimatrix game with M = [0 A; C 0]. Stated with the players' values u and v as unknowns (and a \
-                    constant added to the costs so that A, C > 0) Lemke's algorithm does solve it: rows A y - u e, \
-                    C x - v e, eᵀx - 1, eᵀy - 1 for z = (x, y, u, v).";
+/// How a bimatrix game is stated so that Lemke's algorithm ends in an equilibrium.
+const GAME: &str = " This is a bimatrix game with M = [0 A; C 0]. Lemke's algorithm finds an equilibrium where it is stated \
+                    with the players' values u and v as unknowns, A, C > 0: rows A y - u e, C x - v e, eᵀx - 1, eᵀy - 1 \
+                    for z = (x, y, u, v).";
 
 /// Whether z_r can grow without making any w, or p, fall, where w_r has made room for p: M_rr = 0 and the rest of its
 /// column ≥ 0.
 fn blocks_nothing(lcp: &MirroredLcp, r: usize) -> bool {
     let column = lcp.base.column(r);
     column[r] == 0.0 && column.iter().all(|entry| *entry >= 0.0)
-}
-
-/// Whether M ≥ 0 and its rows fall into two sets with zero diagonal blocks.
-fn is_bimatrix(lcp: &MirroredLcp) -> bool {
-    let (n, m) = (lcp.size(), &lcp.base);
-    if m.iter().any(|entry| *entry < 0.0) {
-        return false;
-    }
-    let mut side: Vec<Option<bool>> = vec![None; n];
-    for start in 0..n {
-        let mut waiting = vec![start];
-        side[start] = Some(side[start].unwrap_or(false));
-        while let Some(i) = waiting.pop() {
-            for j in (0..n).filter(|&j| m[(i, j)] != 0.0 || m[(j, i)] != 0.0) {
-                match side[j] {
-                    None => {
-                        side[j] = side[i].map(|side| !side);
-                        waiting.push(j);
-                    }
-                    Some(other) if Some(other) == side[i] => return false,
-                    Some(_) => {}
-                }
-            }
-        }
-    }
-    side.contains(&Some(true))
 }

@@ -21,6 +21,7 @@
 
 pub mod basis;
 pub mod basis_solution;
+pub mod bimatrix;
 pub(crate) mod dense;
 mod dictionary;
 pub mod driver;

@@ -6,7 +6,6 @@ use super::ladder::EXACT_BUDGET;
 use super::plain_answers::{PlainCheck, check_plain_exactly};
 use super::prepared::Prepared;
 use super::state::{RunData, Solved};
-use crate::answer::attempt::AttemptEngine;
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{OutcomeKind, PairState, State};
 use crate::contact::schemes::exact_check::{ExactCheck, Finding, exact_check};
@@ -79,13 +78,7 @@ impl Prepared {
         }
         match (&solved.run, self.system()) {
             (RunData::Plain { lcp, pivots }, _) => {
-                let basis = match &solved.answer.solution {
-                    Some(solution) if solved.answer.rules.engine == AttemptEngine::Enumeration => {
-                        solution.z.iter().enumerate().filter(|(_, z)| **z > 0.0).map(|(i, _)| i).collect()
-                    }
-                    _ => pivots.basis().z,
-                };
-                check_plain_exactly(lcp, &basis, watch).map(Exactly::Plain).ok_or_else(|| {
+                check_plain_exactly(lcp, &solved.basic_rows(pivots), watch).map(Exactly::Plain).ok_or_else(|| {
                     if watch.stop() {
                         return QuestionError::Interrupted;
                     }

@@ -8,7 +8,6 @@ use super::cold::Extent;
 use super::prepared::{Geometry, Prepared};
 use super::problem::contact_problem;
 use super::state::{RunData, Solved};
-use crate::answer::attempt::AttemptEngine;
 use crate::answer::record::RayClass;
 use crate::contact::problem::ContactProblem;
 use crate::explain::loose::{LoosePart, loose_pairs, loose_parts};
@@ -73,7 +72,7 @@ impl Solved {
         if !self.answer.is_answer() || basis.p || self.answer.marginal {
             return Vec::new();
         }
-        if self.answer.rules.engine == AttemptEngine::Enumeration {
+        if self.answer.rules.engine.is_without_pivots() {
             return Vec::new();
         }
         let Some(fresh) = vertex(&contact.lcp, &basis) else {

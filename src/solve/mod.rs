@@ -15,6 +15,7 @@
 //! ```
 
 pub mod all_answers;
+mod bimatrix;
 pub mod case;
 mod cold;
 pub mod compare;

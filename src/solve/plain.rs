@@ -6,6 +6,7 @@ use std::time::Instant;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::bimatrix::equilibrium;
 use super::engines::{EXACT_ROWS, run_exact_plain, run_scheme, run_tableau};
 use super::error::SolveError;
 use super::finish::{empty_answer, fail_check};
@@ -31,6 +32,9 @@ use crate::watch::{Budget, Watch};
 const UNKNOWN: &str = "For a general M this proves nothing about whether one exists.";
 /// What is said where all bases were tried.
 const ALL_BASES: &str = "Proved: every complementary basis was tried in exact arithmetic, none is an answer.";
+/// What is said of an equilibrium.
+const OF_GAME: &str =
+    "this is a bimatrix game; stated with the players' values as unknowns Lemke's algorithm finds an equilibrium";
 /// Rows up to which all bases are gone through before anything else.
 const FEW_ROWS: usize = 9;
 /// Random covering vectors that are tried.
@@ -192,6 +196,14 @@ pub(super) fn solve_plain_judged(
 /// Proofs that there is no answer, then other rules, then all bases; the first answer wins. Without one the first run is
 /// what is shown, with what was proved.
 fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn Watch) -> Result<Solved, SolveError> {
+    if let Some(z) = equilibrium(&problem.lcp, watch)? {
+        let found = plain_answer(&problem.lcp, &z, AttemptRules::from(own).by(AttemptEngine::Bimatrix));
+        let mut ladder = Ladder::new(first);
+        match ladder.first_answer(std::iter::once(Ok(found)), Some(OF_GAME.to_owned()))? {
+            Some(answer) => return Ok(answer),
+            None => first = ladder.without_answer(),
+        }
+    }
     if let (Some(ray), RunData::Plain { lcp, pivots }) = (&mut first.plain_ray, &first.run) {
         ray.exact = ray_holds(lcp, &pivots.basis(), ray.entering, &Budget::new(watch, EXACT_BUDGET));
         first.answer.ray = Some(ray.record(Verdict::Undecided, UNKNOWN));
@@ -241,7 +253,8 @@ fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn
         return Ok(solved);
     }
     if let Some(found) = &found {
-        let state = |z: &Vec<f64>| Ok(plain_answer(&problem.lcp, z, own.into()));
+        let state =
+            |z: &Vec<f64>| Ok(plain_answer(&problem.lcp, z, AttemptRules::from(own).by(AttemptEngine::Enumeration)));
         let note = others(found.answers.len(), !found.continua.is_empty(), found.complete);
         if let Some(answer) = ladder.first_answer(found.answers.iter().map(state), note)? {
             return Ok(answer);
@@ -250,14 +263,14 @@ fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn
     Ok(ladder.without_answer())
 }
 
-/// An enumerated answer of a bare LCP as a solved state, freshly checked; the other rules are those of the run before it.
+/// An answer of a bare LCP that no pivots of its own led to as a solved state, freshly checked.
 pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], rules: AttemptRules) -> Solved {
     let w = lcp.times(z) + &lcp.q;
     let point = Point { w: w.iter().copied().collect(), z: z.to_vec(), p: 0.0 };
     let check = check_plain(lcp, &point.z, ROUNDING);
     let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
     let size = Size { lcp: lcp.size(), ..Size::default() };
-    let mut answer = empty_answer(&run, 1.0, rules.by(AttemptEngine::Enumeration), size);
+    let mut answer = empty_answer(&run, 1.0, rules, size);
     answer.check = check;
     answer.solution = Some(PlainSolution { z: run.point.z, w: run.point.w });
     if !answer.check.passed {

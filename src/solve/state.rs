@@ -88,6 +88,16 @@ impl Solved {
         pivots
     }
 
+    /// Rows of a bare LCP whose z is basic: those of the last basis, of an answer without pivots those with z > 0.
+    pub(super) fn basic_rows(&self, pivots: &PivotLog) -> Vec<usize> {
+        match &self.answer.solution {
+            Some(solution) if self.answer.rules.engine.is_without_pivots() => {
+                solution.z.iter().enumerate().filter(|(_, z)| **z > 0.0).map(|(row, _)| row).collect()
+            }
+            _ => pivots.basis().z,
+        }
+    }
+
     /// Whether displacements, members, reactions and the check of equilibrium are there, as far as there are such.
     pub fn is_whole(&self) -> bool {
         self.rest.is_none()

@@ -7,7 +7,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use stickslip::answer::attempt::{AttemptCovering, PlainCovering};
+use stickslip::answer::attempt::{AttemptCovering, AttemptEngine, PlainCovering};
 use stickslip::answer::record::{OutcomeKind, Verdict};
 use stickslip::explain::plain_ray::PlainRay;
 use stickslip::lcp::basis::Basis;
@@ -362,6 +362,37 @@ fn a_game_that_no_covering_solves_is_told_with_the_form_that_works() {
     }
     right[2 * k..].fill(-1.0);
     assert!(solved(&form, &right, None).answer.is_answer());
+}
+
+/// Where a ray from the first pivot on is all that Lemke's algorithm has to say the game is solved in that form, whatever q < 0
+/// and whatever the order of the rows; every answer is judged from M and q alone.
+#[test]
+fn games_are_answered() {
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    for case in 0..60 {
+        let (a, b) = (random.random_range(1..20), random.random_range(1..20));
+        let n: usize = a + b;
+        let mut order: Vec<usize> = (0..n).collect();
+        for last in (1..n).rev() {
+            order.swap(last, random.random_range(0..=last));
+        }
+        let mut m = vec![vec![0.0; n]; n];
+        for i in 0..n {
+            for j in (0..n).filter(|&j| (i < a) != (j < a)) {
+                m[order[i]][order[j]] = f64::from(random.random_range(1..1000));
+            }
+        }
+        let uniform = case % 2 == 0;
+        let q: Vec<f64> = (0..n).map(|_| if uniform { -1.0 } else { -random.random_range(0.01..10.0) }).collect();
+        let solved = solved(&m, &q, None);
+        assert_eq!(solved.answer.outcome, OutcomeKind::Normal, "case {case}");
+        let z = &solved.answer.solution.as_ref().expect("of an lcp").z;
+        assert!(worst_violation(&m, &q, z) <= 1e-13, "case {case}");
+        let run = solve(m, q, None);
+        if run.pivots.count() == 1 && matches!(run.outcome, Outcome::Ray(_)) {
+            assert_eq!(solved.answer.rules.engine, AttemptEngine::Bimatrix, "case {case}");
+        }
+    }
 }
 
 /// The basis that came back is named, and what moves at its pivots: nothing.

@@ -18,7 +18,6 @@ use super::exact::final_scheme;
 use super::plain_answers::{RayProof, prove_plain_ray};
 use super::prepared::{Geometry, Prepared};
 use super::state::{RunData, Solved};
-use crate::answer::attempt::AttemptEngine;
 use crate::answer::record::{OutcomeKind, RayClass};
 use crate::contact::law::PairLaw;
 use crate::contact::polygon::Polygon;
@@ -266,12 +265,6 @@ fn branch_of(group: &Group, law: &PairLaw, (scheme, polygon): (PairScheme, Polyg
 fn plain_scheme(rows: usize, solved: &Solved, run: &RunData) -> Vec<usize> {
     let mut scheme = vec![0; rows];
     let RunData::Plain { pivots, .. } = run else { return scheme };
-    let basic: Vec<usize> = match &solved.answer.solution {
-        Some(solution) if solved.answer.rules.engine == AttemptEngine::Enumeration => {
-            solution.z.iter().enumerate().filter(|(_, z)| **z > 0.0).map(|(i, _)| i).collect()
-        }
-        _ => pivots.basis().z,
-    };
-    basic.into_iter().for_each(|row| scheme[row] = 1);
+    solved.basic_rows(pivots).into_iter().for_each(|row| scheme[row] = 1);
     scheme
 }
