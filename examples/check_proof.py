@@ -95,7 +95,7 @@ class Problem:
             below = [(node["branches"][name], *branches[name]) for name in branches]
             return sum(self.tree(child, answers, zero | more, signs | sign) for child, more, sign in below)
         if set(node) == {"cut"}:
-            need(self.total(node["cut"], zero, signs) < 0, "a cut is no contradiction")
+            need(self.total(node["cut"], zero, signs) < 0, "a cut is not a contradiction")
             return 0
         here = [node["answer"]] if set(node) == {"answer", "tight"} else node["set"]
         need(set(node) in ({"answer", "tight"}, {"set"}) and here, "an end that is none")
@@ -244,7 +244,7 @@ def stiffness(R, kernel):
 
 
 def facets(half):
-    """the directions of a polygon from those that are no mirrors: in order around, together a half turn"""
+    """the directions of a polygon from those that are not mirrors: in order around, together a half turn"""
     half = [tuple(map(Fraction, direction)) for direction in half]
     around = half + [(-a, -b) for a, b in half]
     turns = all(cross(d, e) > 0 for d, e in zip(around, around[1:]))

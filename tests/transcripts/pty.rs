@@ -137,7 +137,7 @@ impl Terminal {
 
     /// Waits for an empty prompt in the last line that is written on.
     pub fn prompt(&self) -> String {
-        self.wait("the prompt", |screen| ends_in_prompt(screen.trim_end_matches('\n')))
+        self.wait("the prompt", ends_in_prompt)
     }
 
     /// Types a line and waits for its answer and the next prompt.
@@ -203,8 +203,9 @@ impl Drop for Terminal {
     }
 }
 
-fn ends_in_prompt(screen: &str) -> bool {
-    screen.lines().next_back().is_some_and(|line| line.trim_end() == PROMPT.trim_end())
+/// Whether the last line that is written on is an empty prompt.
+pub fn ends_in_prompt(screen: &str) -> bool {
+    screen.trim_end_matches('\n').lines().next_back().is_some_and(|line| line.trim_end() == PROMPT.trim_end())
 }
 
 pub fn cells(count: u16) -> NonZeroU16 {
