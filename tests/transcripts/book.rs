@@ -1,19 +1,25 @@
-//! The README and the pages of `docs/`: what they show to type is typed. Of each page, in a folder of its own beside the
+//! The README, CONTRIBUTING and the pages of `docs/`: what they show to type is typed. Of each page, in a folder of its own beside the
 //! scenarios and the examples,
 //!
 //! * blocks ```` ```LANGUAGE file=NAME ```` are written to files,
 //! * the lines of blocks ```` ```sh ```` are run by a shell, `stickslip` being the program under test,
-//! * blocks ```` ```bash ````, which need programs of others, must be understood by a shell,
+//! * and so are those of blocks ```` ```bash ````, with the scripts in `stand-ins` in place of programs of others that they
+//!   need (Cargo, Slurm, GNU parallel …),
 //! * blocks ```` ```python ```` are run by Python, the client of the repository driving the program under test,
 //! * blocks ```` ```text serve ```` are lines to `stickslip serve` and its answers by turns, `…` standing for any text,
-//! * blocks ```` ```json ```` must be JSON,
+//! * blocks ```` ```json ```` must be JSON, blocks ```` ```jsonc ```` members of an object, with comments,
 //! * blocks ```` ```stickslip ```` are one session, beginning on the beam, that must not fail,
 //! * the lines of blocks ```` ```text output ```` must stand in what all that shows, one after another (a line may be
-//!   the beginning of one that is shown; blanks count as one).
+//!   the beginning of one that is shown; blanks count as one),
+//! * blocks ```` ```text ````, ```` ```toml ```` and ```` ```sql ```` are read by people and programs of others; there are no
+//!   other blocks.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+use jsonc_parser::ParseOptions;
+use jsonc_parser::cst::CstRootNode;
 
 /// A fenced block of a page: the words behind the fence, and its lines.
 struct Block {
@@ -35,6 +41,8 @@ fn blocks(page: &str) -> Vec<Block> {
     let mut blocks = Vec::new();
     let mut open: Option<Block> = None;
     for line in page.lines() {
+        let begins = line.trim_start().starts_with("```") || line.trim_start().starts_with("~~~");
+        assert!(!begins || line.starts_with("```"), "a block that this test would not find: {line}");
         match (&mut open, line.strip_prefix("```")) {
             (None, Some(words)) => {
                 open =
@@ -57,13 +65,15 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_stickslip");
 
 /// What runs in a folder with the program under test on its path.
 fn command(folder: &Path, name: &str, arguments: &[&str]) -> Command {
-    let mut path = Path::new(PROGRAM).parent().unwrap().as_os_str().to_owned();
-    path.push(":");
-    path.push(std::env::var_os("PATH").unwrap_or_default());
+    let mut path = Path::new(ROOT).join("tests/transcripts/stand-ins").into_os_string();
+    for part in [Path::new(PROGRAM).parent().unwrap().as_os_str(), &std::env::var_os("PATH").unwrap_or_default()] {
+        path.push(":");
+        path.push(part);
+    }
     let mut command = Command::new(name);
     command.args(arguments).current_dir(folder).env("PATH", path).env("HOME", folder);
     command.env_remove("NO_COLOR").env_remove("COLUMNS").env("TERM", "xterm");
-    command.env("STICKSLIP", PROGRAM).env("PYTHONPATH", Path::new(ROOT).join("python"));
+    command.env("ROOT", ROOT).env("STICKSLIP", PROGRAM).env("PYTHONPATH", Path::new(ROOT).join("python"));
     command.env("PYTHONDONTWRITEBYTECODE", "1");
     command
 }
@@ -117,24 +127,27 @@ fn try_page(page: &Path) {
             fs::write(folder.path().join(file), &block.text).unwrap();
         }
     }
-    for block in blocks.iter().filter(|block| block.language() == "bash") {
-        let checked = shell(folder.path(), &["-n"], &block.text);
-        assert!(checked.status.success(), "{name}: {}", String::from_utf8_lossy(&checked.stderr));
-    }
-    for block in &blocks {
-        let run = match (block.language(), block.words.as_slice()) {
-            ("sh", _) => shell(folder.path(), &["-e"], &block.text),
-            ("python", _) => command(folder.path(), "python3", &["-c", &block.text]).output().unwrap(),
-            ("json", [_]) => {
-                serde_json::from_str::<serde_json::Value>(&block.text)
-                    .unwrap_or_else(|error| panic!("{name}: {error}"));
+    for block in blocks.iter().filter(|block| block.file().is_none()) {
+        let words: Vec<&str> = block.words.iter().map(String::as_str).collect();
+        let run = match words[..] {
+            ["sh" | "bash"] => shell(folder.path(), &["-e"], &block.text),
+            ["python"] => command(folder.path(), "python3", &["-c", &block.text]).output().unwrap(),
+            ["json"] => {
+                let read = serde_json::from_str::<serde_json::Value>(&block.text);
+                read.unwrap_or_else(|error| panic!("{name}: {error}"));
                 continue;
             }
-            (_, [text, serve]) if text == "text" && serve == "serve" => {
+            ["jsonc"] => {
+                let read = CstRootNode::parse(&format!("{{{}}}", block.text), &ParseOptions::default());
+                read.unwrap_or_else(|error| panic!("{name}: {error}"));
+                continue;
+            }
+            ["text", "serve"] => {
                 try_serve(folder.path(), &name, &block.text);
                 continue;
             }
-            _ => continue,
+            ["stickslip"] | ["text", "output"] | ["text" | "toml" | "sql"] => continue,
+            _ => panic!("{name}: what is a block of {words:?}?"),
         };
         shown.push_str(&String::from_utf8_lossy(&run.stdout));
         assert!(run.status.success(), "{name}: {}\n{}", block.text, String::from_utf8_lossy(&run.stderr));
@@ -163,7 +176,7 @@ fn pages() -> Vec<PathBuf> {
     let mut pages: Vec<PathBuf> = fs::read_dir(docs).unwrap().map(|entry| entry.unwrap().path()).collect();
     pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
     pages.sort();
-    pages.push(Path::new(ROOT).join("README.md"));
+    pages.extend(["README.md", "CONTRIBUTING.md"].map(|page| Path::new(ROOT).join(page)));
     pages
 }
 
@@ -181,7 +194,7 @@ fn every_page_is_in_the_contents_and_every_link_leads_somewhere() {
     for page in pages {
         let name = page.file_name().unwrap().to_string_lossy();
         assert!(
-            ["SUMMARY.md", "README.md"].contains(&&*name) || contents.contains(&name.to_string()),
+            ["SUMMARY.md", "README.md", "CONTRIBUTING.md"].contains(&&*name) || contents.contains(&name.to_string()),
             "{name} is not in SUMMARY.md"
         );
         for link in links(&fs::read_to_string(&page).unwrap()) {
@@ -197,4 +210,31 @@ fn what_the_pages_show_is_what_happens() {
     for page in pages {
         try_page(&page);
     }
+}
+
+/// The texts `stickslip-WORD/NUMBER` of a file.
+fn formats(text: &str) -> Vec<String> {
+    let starts = text.match_indices("\"stickslip-").map(|(at, _)| &text[at + 1..]);
+    let quoted = starts.filter_map(|rest| rest.split_once('"')).map(|(format, _)| format.to_owned());
+    quoted.filter(|format| format.rsplit_once('/').is_some_and(|(_, number)| number.parse::<u32>().is_ok())).collect()
+}
+
+#[test]
+fn every_format_has_its_line_among_the_versions() {
+    let page = fs::read_to_string(Path::new(ROOT).join("docs/versions.md")).unwrap();
+    let (mut folders, mut found) = (vec![Path::new(ROOT).join("src")], 0);
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if entry.is_dir() {
+                folders.push(entry);
+                continue;
+            }
+            for format in formats(&fs::read_to_string(&entry).unwrap()) {
+                found += 1;
+                let earlier = format == "stickslip-sweep/1";
+                assert!(earlier || page.contains(&format!("| `{format}` |")), "{format} of {}", entry.display());
+            }
+        }
+    }
+    assert!(found >= 5, "{found}");
 }
