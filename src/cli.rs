@@ -131,7 +131,7 @@ fn run(cli: Cli) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Help and version go to stdout and are no error.
+/// Help and version go to stdout and are not errors.
 fn usage(error: &clap::Error, arguments: &[OsString]) -> u8 {
     let status = u8::try_from(error.exit_code()).unwrap_or(2);
     // the message quotes the arguments: it is made again from what of them may be shown

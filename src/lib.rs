@@ -22,6 +22,15 @@
 //! pivot turns one joint on or off, a change of the *working scheme*. (Popov & Lovtsov, Magazine of Civil Engineering
 //! 100(8), 2020, doi 10.18720/MCE.100.1.)
 //!
+//! # Units and signs
+//!
+//! Nothing is converted: lengths and forces are in the units of the scenario, angles and rotations in radians, and all other
+//! units follow (R in force per length, a work in force · length, a stress in force per area, friction without one). Where
+//! numbers are scaled, as in the dictionary of the pivots, or are shares, pixels, bytes, their comment says so. Vectors are
+//! (x, y, z) in global axes, right-handed; what has no z in the plane is 0 there. x_n > 0 presses, z_n > 0 is open, x_τ acts
+//! on the second side, N > 0 and stresses > 0 are tension, reactions act on the structure, moments and rotations are
+//! counter-clockwise seen from the tip of their axis; docs/signs.md has all of them.
+//!
 //! # The way of the data
 //!
 //! scenario file → [`model`] → [`fem`] (R, RF) → [`contact`] (LCP) → [`lcp`] (pivots) → [`answer`] → [`explain`],

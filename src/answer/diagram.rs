@@ -45,7 +45,10 @@ impl Diagram {
         &self.pieces
     }
 
-    /// The force at a distance from the start; beyond a jump that stands there, except at the end of the bar.
+    /// The force (of M, M_y and T the moment) at a distance from the start, with the signs of [`EndForces`]; beyond a jump
+    /// that stands there, except at the end of the bar.
+    ///
+    /// [`EndForces`]: super::record::EndForces
     pub fn at(&self, which: Internal, distance: f64) -> Option<f64> {
         let piece = self.pieces.iter().rev().find(|piece| piece.range[0] <= distance)?;
         (distance <= piece.range[1]).then(|| piece.at(distance)[which.index()])

@@ -99,12 +99,12 @@ impl PairState {
         self.bound - self.x_t.abs()
     }
 
-    /// x_t along its tangents: one component in the plane.
+    /// x_t along its tangents, forces on the second side: one component in the plane.
     pub fn friction(&self) -> Vec<f64> {
         self.space.map_or_else(|| vec![self.x_t], |space| space.x_t.to_vec())
     }
 
-    /// z_t along its tangents: one component in the plane.
+    /// z_t along its tangents, the motion of the second side: one component in the plane.
     pub fn slip(&self) -> Vec<f64> {
         self.space.map_or_else(|| vec![self.z_t], |space| space.z_t.to_vec())
     }

@@ -131,7 +131,7 @@ impl JointState {
         self.against_file(problem)
     }
 
-    /// The unknowns and what answers to them, in the forms that the joints have.
+    /// The unknowns and what answers to them, in the forms that the joints have: z and λ, of joints in force form λ and z.
     pub fn in_forms(&self, system: &ContactSystem) -> (DVector<f64>, Vec<Sum>) {
         let (mut unknowns, mut responses) = (self.z.clone(), Vec::with_capacity(self.z.len()));
         for joint in 0..self.z.len() {

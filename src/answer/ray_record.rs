@@ -81,7 +81,7 @@ pub enum Slip {
 }
 
 impl Slip {
-    /// z_τ; in space its magnitude.
+    /// z_τ; in space its magnitude, ≥ 0.
     pub fn scalar(self) -> f64 {
         match self {
             Slip::Plane(slip) => slip,
@@ -99,7 +99,7 @@ impl PairDirection {
         PairDirection { pair: of.id.clone(), z_n: direction[pair], z_t }
     }
 
-    /// z̄_τ along its tangents.
+    /// z̄_τ along its tangents; a direction has the scale of its largest component, 1.
     pub fn slip(&self) -> Vec<f64> {
         match self.z_t {
             Slip::Plane(slip) => vec![slip],

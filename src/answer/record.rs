@@ -100,7 +100,7 @@ impl NodeDisplacement {
         NodeDisplacement { node: node.to_owned(), ux, uy, rz, space }
     }
 
-    /// By component.
+    /// (u_x, u_y, u_z, r_x, r_y, r_z), lengths and radians.
     pub fn all(&self) -> [f64; 6] {
         let [uz, rx, ry] = self.space.unwrap_or_default();
         [self.ux, self.uy, uz, rx, ry, self.rz]
@@ -342,7 +342,7 @@ pub struct Answer {
     pub start: Start,
     /// What was computed anew for it.
     pub redone: Redone,
-    /// Remarks for the user that are no errors (cohesion in an open pair, several answers …).
+    /// Remarks for the user that are not errors (cohesion in an open pair, several answers …).
     pub notes: Vec<String>,
     /// Why there is no answer, where `outcome` is no ray and no answer.
     pub failure: Option<String>,

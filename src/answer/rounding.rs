@@ -6,7 +6,7 @@ use super::record::{EndForces, MemberForces, Reaction};
 /// solver tells apart in a load is 1e-10 of it (method §4).
 const NOISE: f64 = 1e-12;
 
-/// Largest finite |value|: the scale against which a column's noise is judged.
+/// Largest finite |value|, in the unit of the values: the scale against which a column's noise is judged.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().filter(|value| value.is_finite()).fold(0.0, |largest, value| f64::max(largest, value.abs()))
 }

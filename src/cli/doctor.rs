@@ -13,6 +13,7 @@ use crate::export::json as json_export;
 use crate::model::memory;
 use crate::session::places;
 use crate::signals::{DUMB, is_dumb};
+use crate::text::file::reason;
 use crate::view::style::{Role, Style};
 
 /// Say what this program finds around it: the terminal, its folders, the threads
@@ -76,7 +77,7 @@ impl Folder {
     }
 }
 
-/// A path; what of it is no text is replaced.
+/// A path; what of it is not text is replaced.
 fn shown(path: &Path) -> String {
     path.display().to_string()
 }
@@ -88,7 +89,7 @@ fn cannot_write(path: &Path) -> Option<String> {
     let error = tempfile::tempfile_in(there).err()?;
     // without the path that the crate adds to the message
     let error = error.raw_os_error().map_or(error, io::Error::from_raw_os_error);
-    Some(format!("nothing can be written in {}: {error}", there.display()))
+    Some(format!("nothing can be written in {}: {}", there.display(), reason(&error)))
 }
 
 struct Surroundings {
@@ -118,7 +119,9 @@ impl Surroundings {
             no_color: (!style.color).then(|| look.why_no_color(terminals[1])),
             no_unicode: look.why_ascii(),
             state: Folder::of(places::state().ok_or_else(|| places::NO_STATE.to_owned())),
-            work: Folder::of(std::env::current_dir().map_err(|error| format!("it cannot be named: {error}"))),
+            work: Folder::of(
+                std::env::current_dir().map_err(|error| format!("it cannot be named: {}", reason(&error))),
+            ),
             configuration: places::configuration(),
             threads: rayon::current_num_threads(),
             memory: memory::available_memory(),
@@ -153,7 +156,7 @@ impl Surroundings {
     /// Why the full screen cannot be shown.
     fn no_screen(&self) -> Option<&'static str> {
         if !self.terminals[0] || !self.terminals[1] {
-            return Some("stdin or stdout is no terminal");
+            return Some("stdin or stdout is not a terminal");
         }
         self.no_cursor
     }
@@ -175,8 +178,8 @@ impl Surroundings {
             self.memory.map_or_else(|| "not told by the system".to_owned(), |bytes| memory::readable(bytes as f64));
         let configuration = match &self.configuration {
             Some(path) if self.has_configuration() => shown(path),
-            Some(path) => format!("{} is not there: all is as built in", path.display()),
-            None => "neither XDG_CONFIG_HOME nor HOME is an absolute path: all is as built in".to_owned(),
+            Some(path) => format!("{} is not there: the defaults hold", path.display()),
+            None => "neither XDG_CONFIG_HOME nor HOME is set to an absolute path: the defaults hold".to_owned(),
         };
         vec![
             plain("stickslip", env!("CARGO_PKG_VERSION"), None),

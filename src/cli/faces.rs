@@ -64,7 +64,7 @@ pub(super) fn start_screen(look: &Look, scenario: &str, errors: Style) -> Result
         return Err(Failure::Status(
             2,
             "the full screen needs a terminal that understands cursor codes; `stickslip solve` and `stickslip replay` \
-             work without"
+             work without one"
                 .to_owned(),
         ));
     }

@@ -55,7 +55,7 @@ impl Look {
     pub(super) fn why_no_color(&self, terminal: bool) -> String {
         match self.color {
             Color::Never => "--color never",
-            _ if !terminal => "stdout is no terminal",
+            _ if !terminal => "stdout is not a terminal",
             _ if is_dumb() => DUMB,
             _ => "NO_COLOR is set",
         }

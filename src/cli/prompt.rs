@@ -13,7 +13,7 @@ use crate::session::language::help;
 use crate::text::printable;
 use crate::view::style::Style;
 
-/// The word of `stickslip help WORD` or `stickslip WORD --help`, where that is no command of the shell, and how its help is
+/// The word of `stickslip help WORD` or `stickslip WORD --help`, where that is not a command of the shell, and how its help is
 /// to look.
 pub fn asked_help(arguments: &[OsString]) -> Option<(String, Look)> {
     let (program, rest) = arguments.split_first()?;

@@ -33,7 +33,8 @@ impl Standing {
     }
 }
 
-/// z′ over the joints where `rates` is the derivative of the problem; `None` where the equations are singular.
+/// z′ over the joints where `rates` is the derivative of the problem, per unit of what it is taken by; `None` where the
+/// equations are singular.
 pub fn displacement_rates(
     problem: &ContactProblem,
     rates: &ContactProblem,

@@ -90,7 +90,7 @@ impl FileData {
         self.kept.iter().enumerate().map(left).collect()
     }
 
-    /// z_τ of the frictionless pairs under the forces of the kept joints of a compliance.
+    /// z_τ (lengths, > 0 along +t) of the frictionless pairs under the forces of the kept joints of a compliance.
     pub fn slips_under(&self, forces: &DVector<f64>, load: &FileLoad) -> DVector<f64> {
         let mut all = DVector::zeros(self.matrix.nrows());
         self.kept.iter().zip(forces.iter()).for_each(|(&row, force)| all[row] = *force);

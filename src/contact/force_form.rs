@@ -116,7 +116,7 @@ pub fn with_repeated(system: ContactSystem, dependence: &Dependence<'_>) -> Cont
     }
 }
 
-/// The joint forces and displacements of a state or of a direction, from the unknowns of the LCP.
+/// The joint forces and displacements of a state or of a direction in the user's units, from the unknowns of the LCP.
 pub fn unknowns(
     system: &ContactSystem,
     problem: Option<&ContactProblem>,
@@ -376,7 +376,7 @@ pub fn written_lcp(problem: &ContactProblem, covering: Covering) -> ContactLcp {
     let stiffness_unit = stiffness_unit(system);
     let writer = Writer { system, rows: &rows, friction: &frictions, stiffness_unit };
     let load = joint_forces(problem, &DVector::zeros(system.joint_count()));
-    // What cancels to rounding is no load.
+    // What cancels to rounding is not a load.
     let load = DVector::from_iterator(load.len(), load.iter().map(|sum| sum.cleaned()));
     // Forces as they are, displacements as the forces that a stiffness of one unit makes of them.
     let unscaled = dimensionless(system, &load, 1.0, 1.0 / stiffness_unit);

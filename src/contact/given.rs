@@ -351,7 +351,7 @@ impl Mixed {
         let a = &mut self.matrix;
         let (k, pivot) = (a.nrows(), a[(j, j)]);
         let (row, column) = (a.row(j).into_owned(), a.column(j).into_owned());
-        // What cancels to rounding is no compliance, and no displacement either.
+        // What cancels to rounding is not a compliance, nor a displacement.
         let minus = |value: f64, term: f64| {
             let rest = value - term;
             if rest.abs() <= NOISE * (value.abs() + term.abs()) { 0.0 } else { rest }

@@ -88,7 +88,7 @@ impl PairLaw {
         self.normal == NormalJoint::Bilateral
     }
 
-    /// g; 0 where the pair never opens.
+    /// g, a length, < 0 of an interference; 0 where the pair never opens.
     pub fn gap(&self) -> f64 {
         match self.normal {
             NormalJoint::Unilateral { gap } => gap,
@@ -105,7 +105,7 @@ impl PairLaw {
         self
     }
 
-    /// f; 0 without friction.
+    /// f ≥ 0, without a unit; 0 without friction.
     pub fn friction(&self) -> f64 {
         match self.tangential {
             TangentialJoint::Bounded { friction, .. } => friction,
@@ -113,7 +113,7 @@ impl PairLaw {
         }
     }
 
-    /// The part of the friction bound that does not hang on x_n: c, a force.
+    /// The part of the friction bound that does not hang on x_n: c ≥ 0, a force.
     pub fn fixed_bound(&self) -> f64 {
         match self.tangential {
             TangentialJoint::Bounded { fixed, .. } => fixed,
@@ -141,7 +141,7 @@ impl PairLaw {
         self
     }
 
-    /// d_τ: the entry of the covering in the rows of the reserves; d_n is 1 (method §4).
+    /// d_τ, without a unit: the entry of the covering in the rows of the reserves; d_n is 1 (method §4).
     pub fn covering(&self, covering: Covering) -> f64 {
         match covering {
             _ if self.is_bilateral() => 1.0,
@@ -151,7 +151,7 @@ impl PairLaw {
         }
     }
 
-    /// 2 (d_τ − f d_n): what both reserves together are covered by, without the rounding of the difference.
+    /// 2 (d_τ − f d_n), without a unit: what both reserves together are covered by, without the rounding of the difference.
     pub fn covering_of_both(&self, covering: Covering) -> f64 {
         match covering {
             _ if self.is_bilateral() => 2.0,

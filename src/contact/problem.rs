@@ -118,22 +118,22 @@ impl ContactProblem {
         self
     }
 
-    /// Gap of every pair, that is of the joints from the first on.
+    /// g of every pair, that is of the joints from the first on: lengths, < 0 of an interference.
     pub fn gaps(&self) -> impl Iterator<Item = f64> {
         self.laws.iter().map(PairLaw::gap)
     }
 
-    /// f of every pair.
+    /// f of every pair, without a unit.
     pub fn frictions(&self) -> Vec<f64> {
         self.laws.iter().map(PairLaw::friction).collect()
     }
 
-    /// c of every pair.
+    /// c of every pair, forces.
     pub fn fixed_bounds(&self) -> Vec<f64> {
         self.laws.iter().map(PairLaw::fixed_bound).collect()
     }
 
-    /// z − (g, 0): the whole mutual displacement of the joints.
+    /// z − (g, 0): the whole mutual displacement of the joints, lengths.
     pub fn dislocation(&self, z: &DVector<f64>) -> DVector<f64> {
         let mut moved = z.clone();
         moved.iter_mut().zip(self.gaps()).for_each(|(z, gap)| *z -= gap);

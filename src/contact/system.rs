@@ -42,7 +42,7 @@ impl ContactPair {
         self.tangential.len() == 2
     }
 
-    /// z_τ where z is this over the joints, along t or along t1 and t2; 0 where it has no tangential joint.
+    /// z_τ (> 0 along +t) where z is this over the joints, along t or along t1 and t2; 0 where it has no tangential joint.
     pub fn slip(&self, z: &DVector<f64>) -> [f64; 2] {
         let mut slip = [0.0; 2];
         slip.iter_mut().zip(self.tangential.clone()).for_each(|(slip, joint)| *slip = z[joint]);
@@ -142,7 +142,7 @@ impl ContactSystem {
         self.is_in_space().then(|| format!("`{command}` works in the plane only so far; this problem is in space"))
     }
 
-    /// Up to where an entry of R is the rounding of a zero; 0 where the entries are data.
+    /// Up to where an entry of R is the rounding of a zero, in its unit; 0 where the entries are data.
     pub fn entry_noise(&self, i: usize, j: usize) -> f64 {
         if !self.rounded {
             return 0.0;

@@ -1,7 +1,7 @@
 //! Contact problems in space whose joints repeat one another: solved with joints that yield a little, which is then taken
 //! back.
 //!
-//! No R says λ for every z of joints that repeat one another, and friction in space is no couple of joints that could change
+//! No R says λ for every z of joints that repeat one another, and friction in space is not a couple of joints that could change
 //! sides as in [`super::force_form`]. Joints T that self-stress reaches are given a small compliance ε instead:
 //!
 //! ```text

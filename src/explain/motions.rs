@@ -102,7 +102,7 @@ impl FreeMotions {
         sum
     }
 
-    /// Displacements of all joints.
+    /// Displacements of all joints by so much of each motion.
     pub fn displacements(&self, amounts: &[f64]) -> DVector<f64> {
         DVector::from_fn(self.rows.len(), |joint, _| self.displacement(joint, amounts).value)
     }

@@ -355,7 +355,7 @@ impl RayReport {
             Covering::Weight => format!("an extra pressing force p = {p} in every pair"),
             Covering::Ones => format!("an extra p = {p} in every contact force and every reserve"),
         };
-        // In force form p adds to distances too and to some reserves twice: it is no force that is missing.
+        // In force form p adds to distances too and to some reserves twice: it is not a force that is missing.
         let forced = system.force_form.is_some();
         let mut text = match (self.class == RayClass::Mechanism, forced) {
             _ if self.driver.is_empty() && self.misfit.is_some() => {
@@ -371,11 +371,11 @@ impl RayReport {
             }
             (true, true) => "The motion costs no energy and the loads do work on it.".to_owned(),
             (false, false) => format!(
-                "The run found no state that obeys the laws of contact with less than {missing}; its direction is no pure \
+                "The run found no state that obeys the laws of contact with less than {missing}; its direction is not a pure \
                  mechanism."
             ),
             (false, true) => {
-                "The run found no state that obeys the laws of contact; its direction is no pure mechanism.".to_owned()
+                "The run found no state that obeys the laws of contact; its direction is not a pure mechanism.".to_owned()
             }
         };
         if forced {

@@ -255,7 +255,7 @@ impl Remedy {
                 remedy: format!("a restraint of {part} {against}"),
                 threshold: String::new(),
                 now: String::new(),
-                shown: "stops this motion, not surely the next",
+                shown: "stops this motion, maybe not the next",
             },
             Remedy::Friction { present, needed: None, multiplier, .. } => RemedyWords {
                 remedy: friction_words(*multiplier),
@@ -289,5 +289,5 @@ fn friction_words(multiplier: bool) -> String {
 }
 
 fn shown(tried: bool) -> &'static str {
-    if tried { "an answer was found just beyond it" } else { "needed; that it is enough is not proved" }
+    if tried { "an answer was found just beyond it" } else { "needed; not proved to be enough" }
 }

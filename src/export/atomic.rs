@@ -4,9 +4,11 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use crate::text::file::reason;
+
 /// A file that could not be written; the old one, if there was one, is untouched.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {source}; {}", path.display(), left(path))]
+#[error("cannot write {}: {}; {}", path.display(), reason(source), left(path))]
 pub struct WriteError {
     /// The file.
     pub path: PathBuf,
@@ -52,7 +54,7 @@ pub enum CreateError {
     #[error("{} exists already and stays as it is: name another file, or move it away first", .0.display())]
     There(PathBuf),
     /// The system does not let it.
-    #[error("cannot write {}: {source}", path.display())]
+    #[error("cannot write {}: {}", path.display(), reason(source))]
     Failed {
         /// The file.
         path: PathBuf,

@@ -16,7 +16,7 @@ use crate::text::printable;
 /// A value as text on lines of its own, without the characters that a terminal must not get.
 ///
 /// # Errors
-/// A value that is no JSON.
+/// A value that is not JSON.
 pub fn pretty(value: &impl Serialize) -> io::Result<String> {
     Ok(printable::json(serde_json::to_string_pretty(value).map_err(io::Error::other)?))
 }

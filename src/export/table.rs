@@ -16,7 +16,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Of records; what is no object becomes a row with the one column `value`.
+    /// Of records; what is not an object becomes a row with the one column `value`.
     pub fn of(records: &[Value]) -> Table {
         let mut table = Table::default();
         let flat: Vec<Map<String, Value>> = records.iter().map(flat).collect();

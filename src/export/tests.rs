@@ -78,7 +78,7 @@ fn an_answer_has_the_documented_keys() {
     assert_eq!(keys(&result["members"][0]), ["bar", "element", "start", "end", "diagram", "extremes"]);
     assert_eq!(keys(&result["members"][0]["start"]), ["N", "Q", "M"]);
     assert_eq!(keys(&result["size"]), ["unknowns", "free", "pairs", "lcp"]);
-    // −0 is no result.
+    // −0 is not a result.
     assert!(!result.to_string().contains("-0.0,") && !result.to_string().contains("-0.0}"));
 }
 

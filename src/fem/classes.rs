@@ -56,7 +56,8 @@ impl Classes {
         Classes { class, held, settled, reach }
     }
 
-    /// What one unit of the reduced unknown of a class is divided by in the rows of the bodies and joints.
+    /// What one unit of the reduced unknown of a class is divided by in the rows of the bodies and joints: a length of
+    /// rotations (radians become displacements), 1 of translations.
     pub fn unit(&self, class: u32) -> f64 {
         self.reach.get(&class).copied().unwrap_or(1.0)
     }

@@ -98,7 +98,7 @@ impl MainSystem {
         }
     }
 
-    /// Σ|u||K||u| over uᵀ K u, the largest of a random dislocation that is no motion of the kernel and of the load
+    /// Σ|u||K||u| over uᵀ K u, the largest of a random dislocation that is not a motion of the kernel and of the load
     /// cases on the main system.
     fn worst_amplification(&self) -> f64 {
         let k = self.joints.len();

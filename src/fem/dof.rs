@@ -106,7 +106,8 @@ impl Dofs {
     }
 }
 
-/// The (side, (base dof, coefficient)) of a joint, zero coefficients left out; side 0 is `node`.
+/// The (side, (base dof, coefficient)) of a joint, zero coefficients left out; side 0 is `node`. Coefficients make lengths
+/// of the unknowns: those of translations have no unit, those of rotations are lengths.
 pub fn joint_dofs<'a>(joint: &'a Joint, dofs: &'a Dofs) -> impl Iterator<Item = (usize, (usize, f64))> + 'a {
     joint
         .terms

@@ -18,7 +18,7 @@ impl<'a> ElasticCurves<'a> {
         ElasticCurves { structure, acting: ActingLoads::of(structure, factors) }
     }
 
-    /// Displacements of places of an element, these shares of its length from its start (ascending), under the displacements
+    /// Displacements (u_x, u_y, u_z) of places of an element, these shares of its length from its start (ascending), under the displacements
     /// u of the nodes; `None` of one that does not bend.
     pub fn places(&self, element: usize, u: &[[f64; 6]], shares: &[f64]) -> Option<Vec<[f64; 3]>> {
         let slots = slots(self.structure.elements.get(element)?);

@@ -25,7 +25,7 @@ impl MainSystem {
         self.f.iter().zip(factors).map(|(f, factor)| factor * f.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>()).sum()
     }
 
-    /// ½ (F_a + F_b)·(u_b − u_a): the work on the way between two states, straight in forces and displacements; of the
+    /// ½ (F_a + F_b)·(u_b − u_a), force · length, > 0 where loads give energy away: the work on the way between two states, straight in forces and displacements; of the
     /// loads and of the reactions of supports that settle.
     pub fn work_between(&self, a: &Loaded<'_>, b: &Loaded<'_>) -> f64 {
         let of_loads = self.work(a.factors, b.u) - self.work(a.factors, a.u) + self.work(b.factors, b.u)
@@ -41,7 +41,7 @@ impl MainSystem {
         0.5 * (of_loads + of_supports)
     }
 
-    /// U = ½ uᵀ K u.
+    /// U = ½ uᵀ K u ≥ 0, force · length.
     pub fn strain_energy(&self, u: &Displacements) -> f64 {
         fn half<T: Real>(k: &SymmetricSparse<T>, u: &[T]) -> f64 {
             let force = k.times(u);

@@ -86,7 +86,7 @@ pub enum MainSystemError {
     },
     /// The factor does not fit.
     #[error(
-        "the model is too large: {unknowns} unknowns and {joints} joints need {} of memory, {} are available; \
+        "the model is too large: {unknowns} unknowns and {joints} joints need {} of memory, {} is available; \
          use fewer divisions", bytes(*.needed), bytes(*.available)
     )]
     TooLarge {
@@ -255,7 +255,7 @@ impl fmt::Display for OverConstraint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "the rigid body {} moves as one, and {} hold it more often than it can move: remove one of them, or hold fewer \
+            "the rigid body {} moves as one, and {} hold more displacements than it has: remove one of them, or hold fewer \
              displacements",
             self.id,
             all(&self.holders)

@@ -93,7 +93,7 @@ impl MainSystem {
         u
     }
 
-    /// z of the [repeated](Self::repeated) joints under each load case per unit factor where no independent joint moves:
+    /// z (lengths) of the [repeated](Self::repeated) joints under each load case per unit factor where no independent joint moves:
     /// what supports that settle make of them.
     pub fn repeated_offsets(&self) -> Vec<Vec<f64>> {
         let of = |settled: &Option<Vec<f64>>, joint: usize| {

@@ -31,7 +31,7 @@ pub struct RigidKernel {
     pub coefficients: DMatrix<f64>,
 }
 
-/// z = B u.
+/// z = B u, lengths: > 0 where the pair opens, or its second side moves along +t.
 pub fn mutual_displacements(joints: &[Joint], u: &[[f64; 6]]) -> DVector<f64> {
     DVector::from_iterator(
         joints.len(),

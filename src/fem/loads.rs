@@ -8,7 +8,7 @@ use super::elimination::Elimination;
 use super::error::MainSystemError;
 use crate::model::structure::{Component, ElementLoad, Load, LoadCase, Structure};
 
-/// F per load case and unit factor on the base dofs.
+/// F per load case and unit factor on the base dofs: forces along x, y, z and moments about them.
 ///
 /// # Errors
 /// A moment where there is no rotation.
@@ -51,7 +51,7 @@ pub fn load_vectors(structure: &Structure, dofs: &Dofs) -> Result<Vec<Vec<f64>>,
     Ok(vectors)
 }
 
-/// Imposed displacements of every base dof per load case and unit factor, S s; nothing for a case without settlements.
+/// Imposed displacements (lengths and radians) of every base dof per load case and unit factor, S s; nothing for a case without settlements.
 ///
 /// # Errors
 /// Supports that move as one by ties, of which some settle differently.

@@ -248,7 +248,7 @@ impl MainSystem {
         &self.repeated
     }
 
-    /// R, k × k: rows and columns in the order of the independent joints; exactly symmetric, R Z = 0 to rounding.
+    /// R, force per length, k × k: rows and columns in the order of the independent joints; exactly symmetric, R Z = 0 to rounding.
     pub fn stiffness(&self) -> &DMatrix<f64> {
         &self.r
     }
@@ -269,7 +269,7 @@ impl MainSystem {
         &self.coefficients * (self.z.transpose() * self.of_independent(z))
     }
 
-    /// RF per load case and unit factor, in the order of the joints.
+    /// RF per load case and unit factor, in the order of the joints: forces, x_n > 0 presses.
     pub fn loads(&self) -> &[DVector<f64>] {
         &self.rf
     }

@@ -133,8 +133,8 @@ impl MainSystem {
             .collect()
     }
 
-    /// Force, or moment, of every spring, in the order of [`Structure::springs`]; on a term's component it acts with
-    /// minus the term's factor.
+    /// Force, or moment, of every spring, > 0 where it is stretched, in the order of [`Structure::springs`]; on a term's
+    /// component it acts with minus the term's factor.
     pub fn spring_forces(&self, structure: &Structure, u: &Displacements) -> Vec<f64> {
         structure.springs.iter().map(|s| spring::force(s, &u.0)).collect()
     }

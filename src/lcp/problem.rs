@@ -21,7 +21,7 @@ pub struct Scale {
     pub row: Vec<f64>,
     /// One entry per column of the LCP.
     pub column: Vec<f64>,
-    /// Size of what has to be balanced, where q holds other numbers besides: a friction bound of 1e15 is no load. What
+    /// Size of what has to be balanced, where q holds other numbers besides: a friction bound of 1e15 is not a load. What
     /// is left of p is judged against it. A bare LCP has none.
     pub load: Option<f64>,
 }

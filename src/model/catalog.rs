@@ -9,7 +9,7 @@ use super::scenario::Scenario;
 use super::words::did_you_mean;
 
 /// Loads what a user names: an embedded scenario, or a file if the word holds a slash, ends in `.json` or is the
-/// name of an existing file that is no embedded scenario.
+/// name of an existing file that is not an embedded scenario.
 pub fn load_named_or_file(word: &str) -> Result<Scenario, Problems> {
     let path = Path::new(word);
     let looks_like_a_path = word.contains(['/', std::path::MAIN_SEPARATOR])

@@ -64,7 +64,7 @@ impl EdgeSide {
         }
     }
 
-    /// Position and its derivative at t.
+    /// Position and its derivative by t, both lengths.
     pub fn at(&self, nodes: &[Node], t: f64) -> ([f64; 2], [f64; 2]) {
         let (n, d) = self.shape(t);
         let (mut position, mut tangent) = ([0.0; 2], [0.0; 2]);
@@ -77,7 +77,7 @@ impl EdgeSide {
         (position, tangent)
     }
 
-    /// Length from its first node to t.
+    /// Length from its first node to t, in the unit of the coordinates.
     pub fn length_to(&self, nodes: &[Node], t: f64) -> f64 {
         GAUSS
             .iter()

@@ -20,7 +20,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// G = E/2(1 + ν).
+    /// G = E/2(1 + ν), force per area.
     pub fn shear_modulus(&self) -> f64 {
         self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
     }

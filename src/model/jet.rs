@@ -99,7 +99,7 @@ impl Jet {
     }
 
     fn chosen(self, other: Jet, take_other: bool) -> Jet {
-        // A value that is no number stays visible.
+        // A value that is not a number stays visible.
         let chosen = if take_other || other.value.is_nan() { other } else { self };
         match self.dependence.max(other.dependence) {
             Dependence::Constant => chosen,

@@ -173,7 +173,7 @@ mod tests {
 
     fn of_embedded(name: &str) -> Vec<(String, usize)> {
         let scenario = embedded::load(name).expect("embedded");
-        let Source::Structure(structure) = &scenario.source else { panic!("{name} is no structure") };
+        let Source::Structure(structure) = &scenario.source else { panic!("{name} is not a structure") };
         let ids = structure.pairs.iter().map(|pair| pair.id.clone());
         ids.zip(joint_numbers(structure)).collect()
     }

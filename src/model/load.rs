@@ -9,7 +9,7 @@ use super::mesh;
 use super::parameter::ParameterValues;
 use super::problem::{Problem, Problems};
 use super::scenario::Scenario;
-use crate::text::file;
+use crate::text::file::{self, reason};
 
 /// Reads and checks a scenario file; the scenario's name is the path as given.
 pub fn load_file(path: &Path) -> Result<Scenario, Problems> {
@@ -44,7 +44,8 @@ fn load_bytes(
     path: Option<&Path>,
     help: &str,
 ) -> Result<Scenario, Problems> {
-    let bytes = bytes.map_err(|error| Problems::of_file(name, format!("cannot read the file: {error}"), help))?;
+    let bytes =
+        bytes.map_err(|error| Problems::of_file(name, format!("cannot read the file: {}", reason(&error)), help))?;
     if let Some(refusal) = memory::refusal(memory::for_text(bytes.len())) {
         return Err(Problems::of_file(name, format!("the scenario {refusal}"), "use fewer entries, or more memory"));
     }
@@ -87,7 +88,7 @@ pub fn at_values(scenario: &Scenario, values: &ParameterValues) -> Result<Scenar
 /// case grow by per unit of it, its factor aside.
 ///
 /// # Errors
-/// A number of the loads that is no linear function of it, with the place.
+/// A number of the loads that is not a linear function of it, with the place.
 pub fn rates_along(scenario: &Scenario, values: &ParameterValues, parameter: &str) -> Result<Scenario, Problems> {
     let under = Under { values: Some(values), along: Some(parameter), meshes: scenario.meshes.clone() };
     decode::scenario(&scenario.name, &scenario.text, scenario.path.clone(), under)

@@ -124,7 +124,7 @@ impl<'t> Document<'t> {
     }
 }
 
-/// What is wrong with a text that is no JSON, in the words of a parser that says more.
+/// What is wrong with a text that is not JSON, in the words of a parser that says more.
 fn syntax_error(text: &str) -> SyntaxError {
     match parse_to_ast(text, &CollectOptions::default(), &OPTIONS) {
         Err(error) => SyntaxError {

@@ -227,7 +227,7 @@ impl Scenario {
         problems
     }
 
-    /// The unit of a parameter; `None` where it has none, and of what is no parameter.
+    /// The unit of a parameter; `None` where it has none, and of what is not a parameter.
     pub fn unit_of(&self, parameter: &str) -> Option<&str> {
         self.parameters.get(parameter)?.unit.as_deref()
     }

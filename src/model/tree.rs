@@ -90,7 +90,7 @@ struct Reader<'t> {
 }
 
 impl<'t> Reader<'t> {
-    /// The next token that is no comment, `Some(None)` at the end; `None`: no token of JSON.
+    /// The next token that is not a comment, `Some(None)` at the end; `None`: no token of JSON.
     fn token(&mut self) -> Option<Option<Token<'t>>> {
         loop {
             match self.scanner.scan().ok()? {

@@ -193,7 +193,7 @@ impl Sizes {
 /// present factors. It begins at the unloaded structure, or at the first value with slips left behind.
 ///
 /// # Errors
-/// A name that is no load, a bare LCP, slips that cannot be, a history that breaks down; see [`PathError`].
+/// A name that is not a load, a bare LCP, slips that cannot be, a history that breaks down; see [`PathError`].
 pub fn cycle(case: Case<'_>, name: &str, ends: [f64; 2], most: usize, begin: &Begin) -> Result<Cycle, PathError> {
     let found = followed(case, name, ends, most, begin)?;
     let every_start = match found.kind {
@@ -412,7 +412,7 @@ fn recurrence(turns: &[Turn], same: f64) -> String {
         (None, _) => format!("to {same:e} of the largest"),
         (Some(now), _) if now <= NOISE => "to rounding (256 ε of the terms that each force sums)".to_owned(),
         (Some(now), Some(before)) if now < before => format!(
-            "to {now:.1e} of the largest, {:.3} times the difference of the cycle before: where that goes on, all later cycles \
+            "to {now:.1e} of the largest, {:.3} times the difference of the cycle before: if that goes on, all later cycles \
              together come {:.0e} nearer",
             now / before,
             tail(now, before)

@@ -257,8 +257,8 @@ fn on_grid(
     let place = |value: f64| Place { value, bracket: bracket(value), below: None, above: None, change: None };
     let mut found = gather(&parts, wanted, place);
     found.notes.push(format!(
-        "no exact path leads over {name} here: answers of their own at {} values, each change between two of them \
-         narrowed to a bracket with one on either side; what happens twice between two of them is not seen",
+        "no exact path leads over {name} here: {} values were solved one by one, and each change between two of them \
+         was narrowed to a bracket with an answer on either side; what comes and goes between two of them is not seen",
         CELLS + 1
     ));
     if parts.iter().any(|part| part.side.is_none()) {

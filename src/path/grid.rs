@@ -17,7 +17,7 @@ pub enum GridError {
     #[error("cannot read `{0}`: expected NAME=FROM:TO:STEP, e.g. f=0:1:0.05, or NAME=VALUE")]
     Form(String),
     /// A number that is none.
-    #[error("`{word}` in `{whole}` is no finite number")]
+    #[error("`{word}` in `{whole}` is not a finite number")]
     Number {
         /// The word.
         word: String,
@@ -220,7 +220,7 @@ impl Grid {
         self.len() == 0
     }
 
-    /// The values at point `index`, one per axis.
+    /// The values at point `index`, one per axis, each in the unit of its parameter.
     pub fn point(&self, mut index: usize) -> Vec<f64> {
         if let Some(draw) = &self.drawn {
             return draw.point(index).0;
@@ -258,7 +258,7 @@ impl std::str::FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Shard, String> {
-        let wrong = || format!("`{text}` is no shard: expected K/N with 1 ≤ K ≤ N, e.g. 3/16");
+        let wrong = || format!("`{text}` is not a shard: expected K/N with 1 ≤ K ≤ N, e.g. 3/16");
         let (number, of) = text.split_once('/').ok_or_else(wrong)?;
         let shard =
             Shard { number: number.trim().parse().map_err(|_| wrong())?, of: of.trim().parse().map_err(|_| wrong())? };

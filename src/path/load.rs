@@ -191,7 +191,7 @@ impl LoadPath {
         all
     }
 
-    /// The limit factor, where the path ends in one.
+    /// The limit factor, without a unit, where the path ends in one.
     pub fn limit(&self) -> Option<f64> {
         match self.end {
             PathEnd::Limit(_) => self.factors.last().copied(),

@@ -74,7 +74,7 @@ impl LoadParameter {
                 }
                 Dependence::Nonlinear => {
                     return Err(mixed(format!(
-                        "the factor of case {known}, {}, is no linear function of it: `sweep {name} A..B` varies it",
+                        "the factor of case {known}, {}, is not a linear function of it: `sweep {name} A..B` varies it",
                         factor.text()
                     )));
                 }
@@ -121,7 +121,7 @@ impl LoadParameter {
             let (known, factor) = &prepared.cases[case];
             if self.cases.iter().any(|driven| driven.case == case) {
                 return Err(mixed(format!(
-                    "it stands in the loads of case {known} ({place}) and in its factor: their product is no linear \
+                    "it stands in the loads of case {known} ({place}) and in its factor: their product is not a linear \
                      function of it; `sweep {} A..B` varies it",
                     self.name
                 )));

@@ -65,7 +65,7 @@ impl Part {
             if columns != columns_line(&header.columns()) {
                 return Err(SweepFileError::NoSweep {
                     path: path.to_owned(),
-                    why: "its columns are others".to_owned(),
+                    why: "its columns are different".to_owned(),
                 });
             }
         }

@@ -163,7 +163,7 @@ impl PathRecord {
             .max_by(|&a, &b| turns(a).total_cmp(&turns(b)).then_with(|| last(a).cmp(&last(b))).then(b.cmp(&a)))
     }
 
-    /// Abscissas of the places: the value followed, or the factor of a case.
+    /// Abscissas of the places: the value followed in its own unit, or the factor of a case, which has none.
     pub fn abscissas(&self, case: Option<usize>) -> Vec<f64> {
         self.places
             .iter()

@@ -111,7 +111,7 @@ pub fn sensitivity(case: Case<'_>, solved: &Solved) -> Result<Sensitivity, PathE
             None => None,
             Some(_) => match case.load_rates(name) {
                 Ok(grown) => Some(grown),
-                // A number that is no linear function of it.
+                // A number that is not a linear function of it.
                 Err(PrepareError::Problems(_)) => continue,
                 Err(PrepareError::Interrupted) => return Err(PathError::Interrupted),
             },

@@ -38,7 +38,7 @@ pub(super) fn plane_system<'a>(
     }
 }
 
-/// Refuses a target that is no number; −∞ stands for as far down as it goes.
+/// Refuses a target that is not a number; −∞ stands for as far down as it goes.
 pub(super) fn finite_target(name: &str, to: Option<f64>) -> Result<(), PathError> {
     match to {
         Some(to) if !to.is_finite() && to != f64::NEG_INFINITY => {
@@ -48,14 +48,14 @@ pub(super) fn finite_target(name: &str, to: Option<f64>) -> Result<(), PathError
     }
 }
 
-/// Why a path cannot be followed. Its own end (turning point, limit) is no error.
+/// Why a path cannot be followed. Its own end (turning point, limit) is not an error.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PathError {
     /// A bare LCP.
     #[error("a bare LCP has no loads and no friction: `{0}` needs contact pairs")]
     Plain(&'static str),
     /// Neither a load case nor a parameter that can be followed.
-    #[error("nothing to follow: `{name}` is no load case and no parameter of one; there are {known}")]
+    #[error("nothing to follow: `{name}` is neither a load case nor a parameter of one; there are {known}")]
     Unknown {
         /// As given.
         name: String,
@@ -200,7 +200,7 @@ fn is_at(contact: &ContactLcp, basis: &Basis, point: &Point) -> bool {
         .is_some_and(|found| found.z.iter().zip(&point.z).all(|(a, b)| (a - b).abs() <= 1e-6 * largest))
 }
 
-/// A point of a path over the joints: t is no covering, so nothing of it is added to the forces.
+/// A point of a path over the joints: t is not a covering, so nothing of it is added to the forces.
 pub(crate) fn state_of(problem: &ContactProblem, contact: &ContactLcp, point: &Point) -> JointState {
     let point = Point { p: 0.0, ..point.clone() };
     joint_state(problem, contact, &point)

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::sweep::{FORMAT, Format, Header, Sweep};
 use super::sweep_run::Done;
+use crate::text::file::reason;
 use crate::watch::Watch;
 
 /// A longer line stands in no file of a sweep.
@@ -15,7 +16,7 @@ const LONGEST_LINE: u64 = 1 << 20;
 #[derive(Debug, thiserror::Error)]
 pub enum SweepFileError {
     /// The system refuses.
-    #[error("{path}: {error}")]
+    #[error("cannot read or write {path}: {}", reason(.error))]
     Io {
         /// The file.
         path: PathBuf,
@@ -26,7 +27,7 @@ pub enum SweepFileError {
     #[error("{0} is there already: continue it with --resume, or remove it")]
     Exists(PathBuf),
     /// The file is none of a sweep.
-    #[error("{path} is no file of a sweep: {why}")]
+    #[error("{path} is not a file of a sweep: {why}")]
     NoSweep {
         /// The file.
         path: PathBuf,
@@ -54,7 +55,7 @@ pub enum SweepFileError {
         row: usize,
     },
     /// The result of a merge cannot be written.
-    #[error("cannot write the result: {0}")]
+    #[error("cannot write the result: {}", reason(.0))]
     Output(io::Error),
     /// Shards that do not make a whole.
     #[error("{0}")]
@@ -85,8 +86,8 @@ pub(super) fn read_header(path: &Path, line: &str) -> Result<(Header, Format), S
         Some(text) => (text, Format::Csv),
         None => (line, Format::Json),
     };
-    let header: Header =
-        serde_json::from_str(text.trim_end()).map_err(|error| no(format!("its first line is no header ({error})")))?;
+    let header: Header = serde_json::from_str(text.trim_end())
+        .map_err(|error| no(format!("its first line is not a header ({error})")))?;
     if header.format == "stickslip-sweep/1" {
         return Err(no(format!(
             "it is of an earlier version ({}), whose rows have no checksums; this one goes on with {FORMAT} only: run \
@@ -151,7 +152,7 @@ pub fn run_to_file(sweep: &Sweep<'_>, path: &Path, resume: bool, watch: &dyn Wat
         return Err(SweepFileError::Exists(path.to_owned()));
     }
     if exists && !path.is_file() {
-        return Err(SweepFileError::NoSweep { path: path.to_owned(), why: "it is no regular file".to_owned() });
+        return Err(SweepFileError::NoSweep { path: path.to_owned(), why: "it is not a regular file".to_owned() });
     }
     let mut file =
         OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed(path))?;
@@ -192,7 +193,7 @@ fn scan(sweep: &Sweep<'_>, path: &Path, file: &File) -> Result<(usize, u64), Swe
             return Err(SweepFileError::Another { path: path.to_owned(), what, found, expected });
         }
         if line != wanted {
-            return Err(SweepFileError::NoSweep { path: path.to_owned(), why: "its columns are others".to_owned() });
+            return Err(SweepFileError::NoSweep { path: path.to_owned(), why: "its columns are different".to_owned() });
         }
         length += line.len() as u64;
     }

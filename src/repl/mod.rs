@@ -14,6 +14,7 @@ use crate::view::status;
 use crate::view::style::Style;
 
 use crate::signals::{Signals, is_dumb};
+use crate::text::file::reason;
 
 pub use serve::serve;
 
@@ -43,7 +44,8 @@ pub fn keep_journal(session: &mut Session) {
 /// The journal of this workplace, or why none can be kept.
 fn journal() -> Result<Journal, String> {
     let state = places::state().ok_or(places::NO_STATE)?;
-    let here = std::env::current_dir().map_err(|error| format!("the working directory cannot be named: {error}"))?;
+    let here =
+        std::env::current_dir().map_err(|error| format!("the working folder cannot be named: {}", reason(&error)))?;
     Ok(Journal::new(&state, &here))
 }
 
@@ -56,7 +58,7 @@ pub fn is_interactive() -> bool {
 /// comes back from the full screen: nothing is said about it then.
 ///
 /// # Errors
-/// The results cannot be written (a closed pipe is no error) or the terminal fails.
+/// The results cannot be written (a closed pipe is not an error) or the terminal fails.
 pub fn run(session: &mut Session, style: Style, signals: &Signals, again: bool) -> io::Result<Ended> {
     if !is_interactive() {
         return plain::run(session, style, signals, false);

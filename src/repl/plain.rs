@@ -97,7 +97,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool)
         return Ok(Ended::with(0));
     }
     if line_number == 0 {
-        let note = "stdin is no terminal and holds no commands; `stickslip solve` and `stickslip help` need none (in a \
+        let note = "there is no terminal, and stdin holds no commands; `stickslip solve` and `stickslip help` need none (in a \
                     container, `-it` gives a terminal)";
         for line in style.hanging("note: ", note) {
             let _ = writeln!(io::stderr(), "{line}");
@@ -107,7 +107,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool)
     Ok(Ended::with(status))
 }
 
-/// No colour on a stderr that is no terminal.
+/// No colour on a stderr that is not a terminal.
 fn error_style(style: Style) -> Style {
     Style { color: style.color && io::stderr().is_terminal(), ..style }
 }

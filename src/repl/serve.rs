@@ -25,7 +25,7 @@ const BAD_REQUEST: u8 = 2;
 /// Answers requests until `quit`, the end of the input or a signal that ends the program; the exit status.
 ///
 /// # Errors
-/// stdin cannot be read, or stdout cannot be written (a reader that has gone away is no error).
+/// stdin cannot be read, or stdout cannot be written (a reader that has gone away is not an error).
 pub fn serve(session: &mut Session, style: Style, signals: &Signals) -> io::Result<u8> {
     let lines = reader()?;
     let mut stdout = io::stdout();

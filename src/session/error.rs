@@ -17,6 +17,7 @@ use crate::session::language::error::GrammarError;
 use crate::session::language::expect::{ExpectationSyntax, Unmet};
 use crate::session::language::setting::SetError;
 use crate::solve::error::QuestionError;
+use crate::text::file::reason;
 
 /// A command that failed; the session is as it was.
 #[derive(Debug, Error)]
@@ -49,7 +50,7 @@ pub enum CommandError {
     #[error(transparent)]
     Save(#[from] SaveError),
     /// A file that cannot be read or written.
-    #[error("cannot {doing} {}: {source}", .path.display())]
+    #[error("cannot {doing} {}: {}", .path.display(), reason(.source))]
     File {
         /// `read`, `write` …
         doing: &'static str,
@@ -75,7 +76,7 @@ pub enum CommandError {
     #[error("{0}")]
     Refused(String),
     /// The place for the results does not take them.
-    #[error("cannot write the result: {0}")]
+    #[error("cannot write the result: {}", reason(.0))]
     Output(#[from] io::Error),
 }
 

@@ -63,7 +63,7 @@ pub fn mesh(word: &str, watch: &dyn Watch) -> Result<(Mesh, Overview), CommandEr
 /// The text of a script; `None` for stdin.
 ///
 /// # Errors
-/// It cannot be read or is no UTF-8; an interruption.
+/// It cannot be read or is not UTF-8; an interruption.
 pub fn script(path: Option<&Path>, watch: &dyn Watch) -> Result<String, CommandError> {
     let path = path.map(Path::to_owned);
     worker::run(watch, move |_| {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 /// Why there is no state directory.
-pub const NO_STATE: &str = "neither XDG_STATE_HOME nor HOME is an absolute path";
+pub const NO_STATE: &str = "neither XDG_STATE_HOME nor HOME is set to an absolute path";
 
 /// The state directory: `$XDG_STATE_HOME/stickslip` or `~/.local/state/stickslip`; `None` where neither variable is set
 /// to an absolute path.

@@ -94,7 +94,7 @@ impl Session {
             .unwrap_or_else(|| solved.answer.pairs.clone())
     }
 
-    /// p at the pivot shown.
+    /// p at the pivot shown, a force ≥ 0.
     pub fn p(&self) -> Option<f64> {
         let solved = self.solved.as_ref()?;
         match self.position {

@@ -97,8 +97,8 @@ impl Session {
         let allowed = action.loads() || command.without_scenario || action.expects_error();
         if self.missing != Missing::Nothing && io.unattended && !allowed {
             return Err(CommandError::Refused(
-                "not done: the `load` before it failed, and this was meant for what it did not load; `load` something \
-                 that is there first"
+                "not done: the `load` before it failed, and this was meant for what it should have loaded; `load` \
+                 something that is there first"
                     .into(),
             ));
         }

@@ -20,7 +20,7 @@ pub enum SaveError {
     /// The text of the file does not have the shape it had when it was loaded.
     #[error("cannot save: `{0}` was not found in the text of the scenario; please report this")]
     Shape(String),
-    /// The edited text is no scenario any more.
+    /// The edited text is not a scenario any more.
     #[error("cannot save, the edited scenario would not load; please report this: {0}")]
     Reload(Problems),
     /// The edited text means something else.

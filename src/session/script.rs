@@ -9,7 +9,7 @@ use crate::view::style::Role;
 /// Scripts within scripts, at most: a script that sources itself ends here.
 const DEEPEST: usize = 16;
 
-/// A longer line, in bytes, is no command.
+/// A longer line, in bytes, is not a command.
 pub const LONGEST: usize = 1 << 20;
 
 impl Session {

@@ -41,7 +41,7 @@ impl Case<'_> {
     /// Solves.
     ///
     /// # Errors
-    /// See [`SolveError`]. A run that ends in a ray or breaks down is no error: the answer says so.
+    /// See [`SolveError`]. A run that ends in a ray or breaks down is not an error: the answer says so.
     pub fn solve(self) -> Result<Solved, SolveError> {
         self.solve_as(false, Extent::Whole)
     }

@@ -47,7 +47,7 @@ impl Prepared {
         }
         if let Some((pair, friction)) = frictions().find(|(_, f)| along.dependence(f) == Dependence::Nonlinear) {
             return refused(format!(
-                "the friction of pair {}, {}, is no linear function of {parameter}: `critical` needs one",
+                "the friction of pair {}, {}, is not a linear function of {parameter}: `critical` needs one",
                 pair.id,
                 friction.text()
             ));

@@ -25,7 +25,7 @@ impl Case<'_> {
     /// Splits the loads along a parameter that stands in them.
     ///
     /// # Errors
-    /// A number of the loads that is no linear function of the parameter, with its place; loads that cannot be applied.
+    /// A number of the loads that is not a linear function of the parameter, with its place; loads that cannot be applied.
     pub fn load_rates(self, parameter: &str) -> Result<LoadRates, PrepareError> {
         let Case { scenario, prepared: here, values, .. } = self;
         let rates = rates_along(scenario, values, parameter).map_err(PrepareError::Problems)?;

@@ -56,7 +56,7 @@ fn look_within(time: Duration, scenario: &Scenario, watch: &dyn Watch) -> Result
         Err(PrepareError::Interrupted) if budget.ran_out() => {
             let left_out = format!(
                 "whether the loads press every contact, and whether a part moves in itself, was not decided within {} s: \
-                 `solve` does it",
+                 `solve` decides it",
                 time.as_secs()
             );
             Ok(by_parts(scenario, structure, &kinematics, Some(left_out)))

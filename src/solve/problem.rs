@@ -8,7 +8,7 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::model::parameter::{Number, ParameterValues};
 
-/// The factor of every load case.
+/// The factor of every load case, without a unit.
 pub fn factors(prepared: &Prepared, values: &ParameterValues) -> Vec<f64> {
     prepared.cases.iter().map(|(_, factor)| factor.value(values)).collect()
 }

@@ -119,7 +119,7 @@ impl Solved {
         self.answer.is_answer() && (!cone || self.answer.polygon.is_none_or(|polygon| polygon.cone))
     }
 
-    /// Factors of the load cases; none of a bare LCP.
+    /// Factors of the load cases, without a unit; none of a bare LCP.
     pub fn factors(&self) -> &[f64] {
         match &self.run {
             RunData::Contact { problem, .. } => &problem.factors,

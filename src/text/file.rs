@@ -9,6 +9,18 @@ pub const LARGEST: u64 = 1 << 30;
 /// Bytes read at once.
 const PIECE: usize = 1 << 16;
 
+/// What the system said, without its number: `permission denied`.
+pub fn reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    let Some(code) = error.raw_os_error() else { return text };
+    let text = text.strip_suffix(&format!(" (os error {code})")).unwrap_or(&text);
+    let mut letters = text.chars();
+    match (letters.next(), letters.clone().next()) {
+        (Some(first), Some('a'..='z')) => first.to_lowercase().chain(letters).collect(),
+        _ => text.to_owned(),
+    }
+}
+
 fn refused(why: impl Into<String>) -> io::Error {
     io::Error::other(why.into())
 }
@@ -110,6 +122,14 @@ fn too_large(largest: u64) -> io::Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_reason_has_no_number() {
+        let missing = std::fs::File::open("/no/such/folder").unwrap_err();
+        assert!(missing.raw_os_error().is_some());
+        assert_eq!(reason(&missing), "no such file or directory");
+        assert_eq!(reason(&refused("it is a folder")), "it is a folder");
+    }
 
     #[test]
     #[cfg(unix)]

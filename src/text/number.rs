@@ -65,7 +65,7 @@ pub fn heading(name: &str, unit: Option<&str>) -> String {
     }
 }
 
-/// Zero and what is no number.
+/// Zero and what is not a number.
 pub fn simple(value: f64) -> String {
     if value == 0.0 { "0" } else { "n/a" }.to_owned()
 }

@@ -317,7 +317,7 @@ pub enum Leave {
 pub enum Effect {
     /// Work; only one at a time.
     Run(Job),
-    /// The running job shall stop.
+    /// The running job is to stop.
     Stop,
     /// The end.
     Leave(Leave),

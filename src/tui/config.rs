@@ -11,6 +11,7 @@ use serde_json::Value;
 
 use super::keymap::Keymap;
 use crate::session::places;
+use crate::text::file::reason;
 
 /// What the user may choose.
 #[derive(Clone, Debug)]
@@ -47,7 +48,7 @@ fn read(path: &Path) -> Config {
             config
         }
         Err(error) if error.kind() == io::ErrorKind::NotFound => Config::default(),
-        Err(error) => problem(format!("cannot be read: {error}")),
+        Err(error) => problem(format!("cannot be read: {}", reason(&error))),
     }
 }
 

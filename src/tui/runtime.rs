@@ -105,7 +105,7 @@ struct Reader {
     thread: JoinHandle<()>,
 }
 
-/// What the reader shall do.
+/// What the reader is to do.
 #[derive(Default)]
 struct Rest {
     end: AtomicBool,

@@ -185,7 +185,7 @@ pub enum Asked {
     Redraw,
 }
 
-/// What was asked for since the last look. The key Ctrl-C is no signal here: SIGINT comes from outside.
+/// What was asked for since the last look. The key Ctrl-C is not a signal here: SIGINT comes from outside.
 pub fn asked(signals: &Signals) -> Option<Asked> {
     if signals.must_end() || signals.take_interrupt() {
         Some(Asked::End(signals.status()))

@@ -30,7 +30,7 @@ const QUIET: Duration = Duration::from_millis(40);
 pub fn perform(session: &mut Session, last: &Shown, job: Job, style: Style, watch: &dyn Watch) -> Done {
     let mut output = Vec::new();
     let (mut answers, mut gauges, mut glance, mut asked) = (None, None, None, Vec::new());
-    // what is no command does not ask for it by itself
+    // what is not a command does not ask for it by itself
     let ready = if matches!(job, Job::Set { .. } | Job::Vary { .. }) { Ok(()) } else { session.ensure_whole(watch) };
     let result = ready.and_then(|()| match &job {
         Job::Set { name, value } => slide(session, (name, *value), &mut output, style, watch),
@@ -108,7 +108,7 @@ fn slide(
     session.execute(&format!("set {name} {value}"), &mut io)
 }
 
-/// The value of a slider after these keys; `None` where it is no slider of the scenario any more.
+/// The value of a slider after these keys; `None` where it is not a slider of the scenario any more.
 fn varied(session: &Session, name: &str, tenths: &[i8]) -> Option<f64> {
     let parameter = session.scenario().parameters.get(name)?;
     let now = *session.values().get(name)?;
@@ -204,7 +204,7 @@ impl Worker {
         let _ = self.orders.send((self.given, job, style));
     }
 
-    /// The jobs given so far shall stop.
+    /// The jobs given so far are to stop.
     pub fn stop(&self) {
         self.stopped.store(self.given, Ordering::Relaxed);
     }

@@ -117,8 +117,8 @@ pub fn repetition(found: &Repetition) -> Option<String> {
         Repetition::NotAsked => return None,
         Repetition::TooLarge { pairs, schemes } => {
             return Some(format!(
-                "no proof in rationals was tried: {pairs} pairs and {schemes} working schemes are too many, {MOST_PROVED_PAIRS} \
-                 pairs and {MOST_SCHEMES} schemes are not"
+                "no proof in rationals was tried: {pairs} pairs and {schemes} working schemes are too many (at most \
+                 {MOST_PROVED_PAIRS} pairs and {MOST_SCHEMES} schemes)"
             ));
         }
         Repetition::Unproved(why) => {
@@ -152,7 +152,7 @@ pub fn every_start(found: &Static) -> Option<String> {
         Static::NotAsked => None,
         Static::Inapplicable(why) => Some(format!("another start may do otherwise: {why}")),
         Static::TooLarge(pairs) => Some(format!(
-            "the static theorem of shakedown was not asked of other starts: {pairs} pairs are too many, {MOST_PAIRS} are not"
+            "the static theorem of shakedown was not asked of other starts: {pairs} pairs are too many (at most {MOST_PAIRS})"
         )),
         Static::Nothing => Some("the static theorem of shakedown proves nothing of other starts".to_owned()),
         Static::Proved(_) => Some(

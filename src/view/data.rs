@@ -14,7 +14,7 @@ use crate::text::number::{in_full, short};
 
 /// Keys of a file that are lists of things, with their headings, in the order of a report. What is not here has a
 /// table of another shape (a superelement, a contact system, an LCP, loads, stages), is told elsewhere (parameters,
-/// combinations, probes, rules) or is no data (title, remarks).
+/// combinations, probes, rules) or is not data (title, remarks).
 const LISTS: &[(&str, &str)] = &[
     ("materials", "Materials"),
     ("sections", "Sections"),

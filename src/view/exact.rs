@@ -87,7 +87,7 @@ fn checked_polygon(polygon: Polygon) -> String {
     };
     format!(
         "this is the working scheme on the polygon of {} facets{turned}, each direction taken as the fractions that its \
-         components are stored as; the answer on the cone that Newton's method goes on to is no fraction: `check` has its \
+         components are stored as; the answer on the cone that Newton's method goes on to is not a fraction: `check` has its \
          figures",
         polygon.facets()
     )

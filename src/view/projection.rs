@@ -25,7 +25,7 @@ impl Viewpoint {
         ("YZ", Viewpoint { azimuth: 0.0, elevation: 0.0 }),
     ];
 
-    /// From any side; `None` of angles that are no numbers, or of an elevation beyond the vertical.
+    /// From any side; `None` of angles that are not numbers, or of an elevation beyond the vertical.
     pub fn new(azimuth: f64, elevation: f64) -> Option<Viewpoint> {
         let turned = 180.0 - (180.0 - azimuth).rem_euclid(360.0);
         (turned.is_finite() && elevation.abs() <= 90.0).then_some(Viewpoint { azimuth: turned, elevation })

@@ -19,7 +19,7 @@ pub fn write(out: &mut dyn Write, found: &Sampled, style: &Style) -> io::Result<
     let collapse = share(found.collapse, found.standard_error, found.exact, style);
     writeln!(out, "{}", style.paint(Role::Accent, &format!("probability of collapse {collapse}")))?;
     if let Some(below) = found.below {
-        writeln!(out, "none was drawn: less than {} with 95 %", short(below))?;
+        writeln!(out, "none was drawn: less than {} with 95 % confidence", short(below))?;
     }
     if found.undecided > 0.0 {
         let undecided = share(found.undecided, found.undecided_error, found.exact, style);

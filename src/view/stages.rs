@@ -56,7 +56,7 @@ pub fn table(history: &History, units: &Units) -> Table {
     let mut table = Table::new(columns);
     let ends = history.stages.iter().filter_map(|stage| stage.moments.last());
     let slips = largest(ends.flat_map(|end| end.pairs.iter().map(|pair| pair.z_t)));
-    // Rounding beside the work of the loads is no dissipation.
+    // Rounding beside the work of the loads is not dissipation.
     let energies = largest(history.stages.iter().flat_map(|stage| {
         let energy = stage.energy.unwrap_or_default();
         [stage.dissipated, energy.work, energy.stored]

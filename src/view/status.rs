@@ -63,7 +63,7 @@ pub fn state_counts(pairs: &[PairState]) -> String {
     parts.join(" ")
 }
 
-/// The largest slip of a pair in contact: (|z_τ|, pair).
+/// The largest slip of a pair in contact, a length ≥ 0: (|z_τ|, pair).
 pub fn max_slip(pairs: &[PairState]) -> Option<(f64, &PairState)> {
     pairs
         .iter()
@@ -77,7 +77,7 @@ pub fn max_slip(pairs: &[PairState]) -> Option<(f64, &PairState)> {
         })
 }
 
-/// The largest opening: (z_n, pair).
+/// The largest opening, a length > 0: (z_n, pair).
 pub fn max_opening(pairs: &[PairState]) -> Option<(f64, &PairState)> {
     pairs.iter().filter(|pair| pair.state == State::Open && pair.z_n.is_finite()).map(|pair| (pair.z_n, pair)).fold(
         None,

@@ -26,7 +26,7 @@ pub enum Align {
 enum Kind {
     /// Measured: what is rounding beside the largest is 0.
     Measured,
-    /// The same, freed of its rounding already: beside a bound of 1e15 a force of 1 is no noise.
+    /// The same, freed of its rounding already: beside a bound of 1e15 a force of 1 is not noise.
     Clean,
     /// Given by the user, or read back by him.
     Given,
@@ -82,7 +82,7 @@ impl Column {
         Column { kind: Kind::Plain, ..Column::numbers(head, unit) }
     }
 
-    /// Its small numbers are no rounding.
+    /// Its small numbers are not rounding.
     pub fn clean(mut self) -> Column {
         self.kind = Kind::Clean;
         self

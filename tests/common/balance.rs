@@ -189,7 +189,7 @@ pub fn imbalance(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
     let largest = |k: usize| size.iter().fold(0f64, |a, size| a.max(size[k]));
     let floor = floor(structure, answer);
     let (force, moment) = (largest(0).max(floor), largest(1).max(floor));
-    // The springs of yielding ground are no reactions: it is held by what the pairs press on it.
+    // The springs of yielding ground are not reactions: it is held by what the pairs press on it.
     let is_structure = |part: &usize| !structure.yielding_ground.contains(part);
     let mut worst = 0f64;
     for part in (0..n).filter(is_structure) {

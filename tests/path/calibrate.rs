@@ -197,7 +197,7 @@ fn what_cannot_be_calibrated_is_refused() {
         ("calibrate g where z_t c6 = 0.001", "no parameter or load case `g`"),
         ("calibrate f where z_t c9 = 0.001", "no pair `c9`"),
         ("calibrate f where slip c1 = 0.001", "calibrate: "),
-        ("calibrate f where z_t c6", "calibrate: `` is no comparison"),
+        ("calibrate f where z_t c6", "calibrate: `` is not a comparison"),
         ("calibrate f where z_t c6 < 1", "expected `where QUANTITY = VALUE"),
         ("calibrate \"\"", "expected the name of a friction parameter"),
         ("calibrate f where", "expected `where QUANTITY = VALUE"),

@@ -147,12 +147,12 @@ fn what_is_not_linear_is_refused_with_its_place() {
         (
             "\"H\": 1",
             POINT.replace("\"H\"", "\"H^2\""),
-            "loads.push.items[0].point.force[0]: \"H^2\" is no linear function of H",
+            "loads.push.items[0].point.force[0]: \"H^2\" is not a linear function of H",
         ),
         (
             "\"H\": 1, \"G\": { \"formula\": \"sin(H)\" }",
             POINT.replace("\"H\"", "\"G\""),
-            "loads.push.items[0].point.force[0]: \"G\" is no linear function of H",
+            "loads.push.items[0].point.force[0]: \"G\" is not a linear function of H",
         ),
         (
             "\"H\": 1",

@@ -240,10 +240,10 @@ fn refusals_say_what_is_expected() {
         ("f=uniform(0,1) 100 200", "one number of points"),
         ("f=uniform(0,1) 1e6 --crude", "belong in a file"),
         ("f=uniform(0,1) of safety pull", "no quantity of a single state"),
-        ("f = uniform", "`uniform` is no distribution: expected uniform(LEAST, GREATEST)"),
+        ("f = uniform", "`uniform` is not a distribution: expected uniform(LEAST, GREATEST)"),
         ("f=uniform(0,1) of", "expected a quantity after `of`"),
         ("f=uniform(0,1) of \"\"", "expected a quantity after `of`"),
-        ("f=uniform(0,1) 0", "`0` is no number of points; expected a whole number from 2 to 1e9"),
+        ("f=uniform(0,1) 0", "`0` is not a number of points; expected a whole number from 2 to 1e9"),
         ("f=uniform(0,1) --shard 1/2", "--out"),
     ] {
         let why = report(&mut session, &format!("sample {words}")).unwrap_err();

@@ -49,7 +49,7 @@ fn a_rigid_bar_sinks_and_tilts() {
                 near("sum", sum, f, 1e-9, f);
                 close("x_n", answer.pairs[16].x_n, -k * l / n / 2.0 * v(4.0), 1e-5);
                 assert!(answer.pairs.iter().all(|pair| pair.state == State::Closed));
-                // What the pairs carry is no reaction; the support along x has none.
+                // What the pairs carry is not a reaction; the support along x has none.
                 assert!(answer.reactions.as_ref().unwrap().iter().all(|r| r.fy == 0.0));
             } else {
                 let sum: f64 = answer.reactions.as_ref().unwrap().iter().map(|r| r.fy).sum();

@@ -274,7 +274,7 @@ fn contact_between_rigid_bodies() {
 }
 
 /// Two rigid links pinned to supports and to each other by a tie, the pin on a spring: v = P/k, links turn by ±v/L. A
-/// hinge of the tie is no hinge of the body: with one of them clamped nothing moves.
+/// hinge of the tie is not a hinge of the body: with one of them clamped nothing moves.
 #[test]
 fn links_pinned_by_a_tie() {
     let (l, k, p) = (2.0, 5.0, 3.0);

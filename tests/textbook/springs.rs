@@ -32,7 +32,7 @@ fn a_spring_between_two_cantilevers() {
         };
         close("difference", across("b") - across("c"), -f * c / (1.0 + 2.0 * k * c), 1e-11);
         close("sum", across("b") + across("c"), -f * c, 1e-11);
-        // What stays inside the structure is no reaction.
+        // What stays inside the structure is not a reaction.
         assert_eq!(answer.reactions.as_ref().unwrap().len(), 2);
     }
 }

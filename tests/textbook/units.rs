@@ -80,7 +80,7 @@ fn converted(name: &str, parameters: &[(&str, (i32, i32))], units: (f64, f64)) -
 
 fn compare(name: &str, parameters: &[(&str, (i32, i32))], sets: &[&[(&str, f64)]]) {
     let original = Case::embedded(name);
-    // From (m, kN): N and mm, MN and km, and an odd one that is no power of ten.
+    // From (m, kN): N and mm, MN and km, and an odd one that is not a power of ten.
     for units in [(1e3, 1e3), (1e-3, 1e-3), (1.0 / 7.3, 39.37), (1e6, 1.0), (1.0, 1e-6)] {
         let other = Case::text(&converted(name, parameters, units));
         for rules in all_rules() {

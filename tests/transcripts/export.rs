@@ -331,7 +331,7 @@ fn check_picture(name: &str, text: &str) {
     }
     assert!(boxes.len() > 1, "{name}: no texts");
     assert!(!text.contains("NaN") && !text.contains("inf"), "{name}");
-    // What is no number would be drawn to the corner.
+    // What is not a number would be drawn to the corner.
     assert!(!text.contains(" 0,0") && !text.contains("\"0,0"), "{name}: a point in the corner");
 }
 

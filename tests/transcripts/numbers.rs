@@ -152,7 +152,7 @@ fn paths_follow_affine_factors_and_refuse_the_rest_in_words() {
     let text = BAR.replace("2*F + 10", "F*F/10 + 10");
     let mut rig = Rig::new(&text);
     let error = rig.refused("trace F to 30");
-    assert!(error.contains("the factor of case pull, P, is no linear function of it: `sweep F A..B`"), "{error}");
+    assert!(error.contains("the factor of case pull, P, is not a linear function of it: `sweep F A..B`"), "{error}");
 }
 
 #[test]

@@ -81,7 +81,7 @@ fn doctor_says_what_it_finds_and_writes_nothing() {
     assert_eq!(report["configuration"]["path"], format!("{path}/.config/stickslip/config.json"));
     assert_eq!(report["configuration"]["exists"], false);
     assert_eq!(report["terminal"]["cursor_codes"], true);
-    // stdin is no terminal
+    // stdin is not a terminal
     assert_eq!(report["terminal"]["full_screen"], false);
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 0);
     let cores = std::thread::available_parallelism().unwrap().get();

@@ -110,7 +110,7 @@ pub enum ConeFailure {
     /// Joints that repeat one another press the more the less they yield.
     #[error("joints that repeat one another do not come to rest: their gaps leave no room for all of them")]
     DoNotFit,
-    /// R, the load or the start has entries that are no numbers.
+    /// R, the load or the start has entries that are not numbers.
     #[error("the contact stiffness matrix, the load or the start has entries that are not finite")]
     NotFinite,
 }

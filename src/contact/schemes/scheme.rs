@@ -27,7 +27,7 @@ pub struct Conditions {
 }
 
 /// The forms of the slip whose signs tell its direction, as components along the tangents: in the plane z_τ itself, in
-/// space d_k × z_τ of the facets that are no mirrors, k < K/2.
+/// space d_k × z_τ of the facets that are not mirrors, k < K/2.
 pub fn slip_forms(polygon: Polygon) -> Vec<[f64; 2]> {
     if polygon == Polygon::PLANE {
         return vec![polygon.direction(0)];

@@ -96,7 +96,7 @@ impl Bending {
 }
 
 impl Span {
-    /// (q_x, q_y, q_z) at a distance from the start of the element.
+    /// (q_x, q_y, q_z) at a distance from the start of the element, bar axes, force per length.
     pub fn at(&self, s: f64) -> [f64; 3] {
         let [a, b] = self.range;
         let t = (s - a) / (b - a);
@@ -238,7 +238,7 @@ impl Piece {
         (a, (b - a) / (self.range[1] - self.range[0]))
     }
 
-    /// The internal forces as polynomials in the distance from the start of the piece: coefficients of its powers from 0
+    /// The internal forces, with the signs of the module, as polynomials in the distance from the start of the piece: coefficients of its powers from 0
     /// on, without zeros at the end.
     pub fn polynomials(&self) -> [Vec<f64>; 6] {
         let mut all = self.start.map(|constant| vec![constant]);
@@ -256,7 +256,7 @@ impl Piece {
         })
     }
 
-    /// Places where the internal force number `which` may be largest or smallest: the ends and where its derivative
+    /// Places, distances from the start of the piece, where the internal force number `which` may be largest or smallest: the ends and where its derivative
     /// vanishes.
     pub fn candidates(&self, which: usize) -> Vec<f64> {
         let [from, to] = self.range;

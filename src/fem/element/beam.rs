@@ -70,7 +70,7 @@ impl Beam {
         full
     }
 
-    /// Stiffness in bar axes.
+    /// Stiffness in bar axes: forces and moments at both ends per displacement and radian.
     pub fn stiffness<T: Real>(&self, length: T) -> Matrix6<T> {
         let ea = T::from(self.axial) / length;
         // The closed forms of the condensed matrices, so that zeros are exact zeros.
@@ -123,7 +123,7 @@ impl Beam {
         }
     }
 
-    /// Forces at the ends in bar axes that stand for the load between them.
+    /// Forces and moments on the ends in bar axes that stand for the load between them.
     pub fn forces(&self, load: &BarLoad, length: f64) -> Vector6 {
         let mut f = Vector6::from_fn(|row, _| load.work(&|s| self.plane.motion(self.shape(row, s, length))));
         let (normal, moment) = (self.axial * load.strain, self.bending * load.curvature[self.plane as usize]);

@@ -115,7 +115,7 @@ impl FiniteElement for Frame {
         let load = BarLoad::of(acting, &self.axes, self.area);
         let all = self.with_released(u);
         let forces = load.forces_along(self.end_forces(&all, &load), self.axes.length);
-        forces.pieces.first()?; // there is none where the length is no number
+        forces.pieces.first()?; // there is none where the length is not a number
         let local = rotation(&self.axes) * Vector6::from(all);
         let places: Vec<f64> = shares.iter().map(|share| share * self.axes.length).collect();
         let curve = self.beam.curve(&load, &forces, [local[0], local[1]], local[4], &places);

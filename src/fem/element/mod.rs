@@ -121,7 +121,7 @@ pub fn check_spring(structure: &Structure, spring: &Spring) -> Result<(), MainSy
 
 fn beyond(what: &str, value: f64, range: &std::ops::Range<f64>, advice: &str) -> String {
     let std::ops::Range { start, end } = range;
-    format!("its {what} is {value:.1e}, and numbers from {start:.0e} to {end:.0e} can be computed with: {advice}")
+    format!("its {what} is {value:.1e}, and only numbers from {start:.0e} to {end:.0e} can be computed with: {advice}")
 }
 
 /// Largest difference of a coordinate between two nodes of an element.

@@ -3,12 +3,13 @@
 use crate::doubled::Real;
 use crate::model::structure::Spring;
 
-/// Stiffness between two of its terms.
+/// Stiffness between two of its terms: force per length, of rotations moment per radian.
 pub fn stiffness<T: Real>(spring: &Spring, i: usize, j: usize) -> T {
     T::from(spring.terms[i].factor) * T::from(spring.terms[j].factor) * T::from(spring.stiffness)
 }
 
-/// Force, or moment, with which it resists: s Σ a u for displacements per node.
+/// Force, or moment, with which it resists: s Σ a u for displacements per node, > 0 where it is stretched. It pulls back:
+/// on the component of a term acts −a times it.
 pub fn force(spring: &Spring, u: &[[f64; 6]]) -> f64 {
     let stretch: f64 = spring.terms.iter().map(|term| term.factor * u[term.node][term.component as usize]).sum();
     spring.stiffness * stretch

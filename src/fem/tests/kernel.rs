@@ -129,7 +129,7 @@ fn internal_mechanism_of_a_large_truss() {
     assert!((system.stiffness() * system.kernel()).amax() < 1e-15 * system.stiffness().amax());
 }
 
-/// A soft part beside a stiff one is no mechanism.
+/// A soft part beside a stiff one is not a mechanism.
 #[test]
 fn stiffness_contrast_is_no_mechanism() {
     for contrast in [1e6, 1e9] {

@@ -277,7 +277,7 @@ fn too_large_says_how_large() {
     };
     assert_eq!(
         error.to_string(),
-        "the model is too large: 50000000 unknowns and 800 joints need 123.4 GB of memory, 900 MB are available; \
+        "the model is too large: 50000000 unknowns and 800 joints need 123.4 GB of memory, 900 MB is available; \
          use fewer divisions"
     );
 }

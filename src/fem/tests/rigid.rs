@@ -215,8 +215,8 @@ fn what_holds_a_body_too_often_is_named() {
     model.support(b, "x");
     assert_eq!(
         words(&model),
-        "the rigid body body1 moves as one, and the support at n0 in x and the support at n1 in x hold it more often \
-         than it can move: remove one of them, or hold fewer displacements"
+        "the rigid body body1 moves as one, and the support at n0 in x and the support at n1 in x hold more \
+         displacements than it has: remove one of them, or hold fewer displacements"
     );
     let (mut model, nodes) = bar();
     for node in nodes {

@@ -27,7 +27,7 @@ fn same_run_as_the_rational_tableau() {
     let mut rays = 0;
     for case in 0..600u64 {
         let n = random.random_range(1..=7usize);
-        // Integers (ties), thirds (denominators that are no powers of two), or any f64.
+        // Integers (ties), thirds (denominators that are not powers of two), or any f64.
         let mut number = |range: i64| match case % 3 {
             0 => BigRational::from_integer(BigInt::from(random.random_range(-range..=range + 1))),
             1 => BigRational::new(BigInt::from(random.random_range(-range..=range + 1)), BigInt::from(3)),

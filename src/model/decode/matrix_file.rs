@@ -5,6 +5,7 @@ use std::path::Path;
 use super::matrix_market::{self, Entries, MatrixError, Size};
 use super::reader::Cursor;
 use super::words::quoted;
+use crate::text::file::{read_text, reason};
 
 /// Reads the matrix that `cursor`, an object, names; also where the name stands.
 pub fn read<'a>(cursor: Cursor<'a>, size: Size, path: Option<&Path>) -> Option<(Vec<Vec<f64>>, Cursor<'a>)> {
@@ -27,11 +28,11 @@ fn named<T>(at: Cursor<'_>, path: Option<&Path>, read: impl Fn(&str) -> Result<T
         return None;
     };
     let file = scenario.parent().unwrap_or(Path::new("")).join(name);
-    let text = match crate::text::file::read_text(&file) {
+    let text = match read_text(&file) {
         Ok(text) => text,
         Err(error) => {
             at.problem(
-                format!("cannot read the matrix {}: {error}", quoted(name)),
+                format!("cannot read the matrix {}: {}", quoted(name), reason(&error)),
                 "the file is looked for beside the scenario file",
             );
             return None;

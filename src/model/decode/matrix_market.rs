@@ -205,7 +205,7 @@ impl Header {
                 .ok()
                 .filter(|index| (1..=size).contains(index))
                 .map(|index| index - 1)
-                .ok_or_else(|| error(number, format!("`{word}` is no row or column, expected 1 to {size}"), ""))
+                .ok_or_else(|| error(number, format!("`{word}` is not a row or column, expected 1 to {size}"), ""))
         };
         let (i, j) = (index(parts[0], rows)?, index(parts[1], columns)?);
         if self.symmetric && j > i {

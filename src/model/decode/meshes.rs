@@ -38,7 +38,7 @@ pub struct MeshOutline<'d> {
     pub id: &'d str,
     pub mesh: Arc<Mesh>,
     pub scale: f64,
-    /// For each element of the file what it is made of; `None` for what is no part of a body.
+    /// For each element of the file what it is made of; `None` for what is not a part of a body.
     pub parts: Vec<Option<Part>>,
     /// Groups of lines that are bars.
     pub bars: Vec<Lines<'d>>,

@@ -99,7 +99,7 @@ impl<'d> Cursor<'d> {
         if let Some((name, along)) = self.along() {
             let jet = number.along(along);
             if jet.dependence == Dependence::Nonlinear {
-                let message = format!("{} is no linear function of {name}", self.quoted());
+                let message = format!("{} is not a linear function of {name}", self.quoted());
                 self.problem(message, format!("`sweep {name} A..B` varies it"));
                 return None;
             }

@@ -128,7 +128,7 @@ impl<'d> Cursor<'d> {
     pub fn string(self) -> Option<&'d str> {
         let string = self.value.as_str();
         if string.is_none() {
-            self.wrong_type("a string", "write a text in \"…\"");
+            self.wrong_type("a string", "write text in \"…\"");
         }
         string
     }
@@ -178,7 +178,7 @@ impl<'d> Cursor<'d> {
         if found != count {
             self.problem(
                 format!("expected {}, {what}, found {found}", counted(count, "entry", "entries")),
-                if found < count { "add the missing ones" } else { "remove those too many" },
+                if found < count { "add the missing ones" } else { "remove the extra ones" },
             );
             return None;
         }

@@ -19,7 +19,7 @@ const DEEPEST: usize = 64;
 /// What may stand in an expression besides numbers and parameters.
 pub const GRAMMAR: &str = "expressions are made of numbers, parameters, pi, + - * / ^, parentheses, sqrt, abs, min, max, sin, cos, tan and atan";
 
-/// A text that is no expression.
+/// A text that is not an expression.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExpressionError {
     /// Byte offset in the text.
@@ -258,7 +258,7 @@ fn number(input: &mut Input<'_>, at: usize) -> Result<f64, ExpressionError> {
             "a product is written with `*`: 2*F",
         )),
         (Some(value), _) => Ok(value),
-        (None, _) => Err(ExpressionError::new(at, format!("`{literal}` is no number"), GRAMMAR)),
+        (None, _) => Err(ExpressionError::new(at, format!("`{literal}` is not a number"), GRAMMAR)),
     }
 }
 

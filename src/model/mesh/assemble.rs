@@ -145,7 +145,7 @@ fn resolved(raw: &RawMesh) -> Result<(Vec<MeshElement>, Vec<u32>), Vec<MeshProbl
                 raw.problem(
                     place,
                     format!("element {tag} has the same nodes as element {}{}", other.tag, raw.first_at(other.place)),
-                    "two elements on one another count twice: remove one of the two",
+                    "two elements on top of each other count twice: remove one of the two",
                 )
             }),
             _ => {}
@@ -172,7 +172,7 @@ fn in_one_plane(raw: &RawMesh, elements: &[MeshElement]) -> Result<(), Vec<MeshP
         }
     }
     let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-    // Areas of smaller elements are no numbers; coincident nodes have messages of their own.
+    // Areas of smaller elements are not numbers; coincident nodes have messages of their own.
     const SMALLEST: f64 = 1e-150;
     if size > 0.0 && size < SMALLEST {
         let message = format!("the mesh is {size:e} wide and high, which is too small to compute with");

@@ -16,7 +16,7 @@ use crate::model::edge::{ChainError, Edge, EdgeSide, Sides};
 pub enum EdgeFault {
     /// It has no side of an element.
     Empty,
-    /// A line, or the segment between two nodes, that is no side of an element.
+    /// A line, or the segment between two nodes, that is not a side of an element.
     NoSide([usize; 2], Option<u32>),
     /// A side that two elements share.
     Inside([usize; 2], Option<u32>),
@@ -30,7 +30,7 @@ pub enum EdgeFault {
     Pieces(usize, [usize; 2]),
     /// The node at which the body changes from one side to the other.
     Turns(usize),
-    /// Its members are no boundary: points, or elements.
+    /// Its members are not a boundary: points, or elements.
     NoEdge,
 }
 
@@ -290,7 +290,7 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
         let (why, help) = match fault {
             EdgeFault::Empty => ("has no side of an element on the boundary".into(), "name another group"),
             EdgeFault::NoSide(ends, line) => (
-                format!("is no edge: {} is no side of an element", what(ends, line)),
+                format!("is not an edge: {} is not a side of an element", what(ends, line)),
                 "lines of an edge lie on the boundary and have the nodes of its elements",
             ),
             EdgeFault::Inside(ends, line) => (
@@ -324,7 +324,7 @@ impl<M: Deref<Target = Mesh>> Boundary<M> {
                 (format!("changes from one side of the body to the other at node {}", tag(*node)), split)
             }
             EdgeFault::NoEdge => {
-                (format!("consists of {} and is no edge", group.members.what()), "name a group of lines")
+                (format!("consists of {} and is not an edge", group.members.what()), "name a group of lines")
             }
         };
         (format!("the group \"{}\" ({}) {why}", group.name, mesh.at(group.place)), help.into())

@@ -76,7 +76,7 @@ pub fn oriented(mut chain: Vec<usize>, position: &dyn Fn(usize) -> [f64; 2]) -> 
     chain
 }
 
-/// Of a closed polygon, > 0 counter-clockwise.
+/// Area of a closed polygon, > 0 counter-clockwise.
 pub fn signed_area(corners: &[[f64; 2]]) -> f64 {
     let Some(origin) = corners.first() else { return 0.0 };
     let from = |k: usize| [corners[k][0] - origin[0], corners[k][1] - origin[1]];

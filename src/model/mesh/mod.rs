@@ -26,6 +26,7 @@ use std::sync::Arc;
 
 use super::problem::{Problem, Problems};
 pub use super::shape::Shape;
+use crate::text::file::reason;
 use crate::text::hash::Hash;
 
 /// What is wrong with a mesh, and where.
@@ -325,8 +326,8 @@ pub fn read(path: &Path, name: &str) -> Result<Mesh, Vec<MeshProblem>> {
             "save the mesh in one of these formats",
         ));
     };
-    let bytes =
-        file::read(path).map_err(|error| problem(format!("cannot read the mesh: {error}"), "check name and folder"))?;
+    let bytes = file::read(path)
+        .map_err(|error| problem(format!("cannot read the mesh: {}", reason(&error)), "check name and folder"))?;
     match format {
         Format::Gmsh => read_gmsh(&bytes, name),
         Format::Abaqus => read_abaqus(&bytes, name, path.parent()),

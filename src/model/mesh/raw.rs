@@ -104,7 +104,7 @@ impl RawMesh {
 
     /// Adds a node: its coordinates are finite, its number is new.
     pub fn add_node(&mut self, tag: u64, position: [f64; 3], place: Place) -> Result<(), MeshProblem> {
-        // Larger ones have squares that are no numbers.
+        // Larger ones have squares that are not numbers.
         const LARGEST: f64 = 1e150;
         for (axis, x) in ["x", "y", "z"].into_iter().zip(position) {
             if x.is_nan() || x.abs() > LARGEST {

@@ -14,16 +14,16 @@ use crate::model::groups::Groups;
 use crate::model::shape::side_corners;
 use crate::model::vector::{cross, way};
 
-/// Why a group is no face. Nodes are indices into the mesh.
+/// Why a group is not a face. Nodes are indices into the mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FaceFault {
     /// It has no side of an element.
     Empty,
-    /// An area that is no side of an element.
+    /// An area that is not a side of an element.
     NoSide(u32),
     /// A side that two elements share.
     Inside(Vec<usize>),
-    /// Its members are no surface: points, lines, or solids.
+    /// Its members are not a surface: points, lines, or solids.
     NoFace,
 }
 
@@ -170,7 +170,11 @@ impl<M: Deref<Target = Mesh>> Surface<M> {
             FaceFault::NoSide(area) => {
                 let area = &mesh.elements[*area as usize];
                 (
-                    format!("is no face: its element {} ({}) is no side of a solid", area.tag, mesh.at(area.place)),
+                    format!(
+                        "is not a face: its element {} ({}) is not a side of a solid",
+                        area.tag,
+                        mesh.at(area.place)
+                    ),
                     "areas of a face lie on the surface and have the nodes of its solids",
                 )
             }
@@ -182,7 +186,7 @@ impl<M: Deref<Target = Mesh>> Surface<M> {
                 )
             }
             FaceFault::NoFace => (
-                format!("consists of {}, which are no face", group.members.what()),
+                format!("consists of {}, which is not a face", group.members.what()),
                 "name a group of areas on the surface, a surface or a node set",
             ),
         };

@@ -85,7 +85,7 @@ fn without_property(
     for (index, item) in items.into_iter().flat_map(Node::items).enumerate() {
         for (load, property) in [("gravity", "density"), ("temperature", "expansion")] {
             let Some(of_load) = item.get(load) else { continue };
-            // A name that is no element of the file is one of a mesh: its material is not looked for.
+            // A name that is not an element of the file is one of a mesh: its material is not looked for.
             let Some(on) = materials.on(of_load.get("on")) else { continue };
             let has = |&material: &usize| {
                 let material = &structure.materials[material];

@@ -54,7 +54,7 @@ fn known(label: &str, table: &[(&str, f64)]) -> Option<f64> {
     table.iter().find(|(word, _)| *word == label.trim()).map(|(_, size)| *size)
 }
 
-/// `kN/m²`, `N·mm`, `kN*m^2`; `None` if it is no product of known forces and lengths.
+/// `kN/m²`, `N·mm`, `kN*m^2`; `None` if it is not a product of known forces and lengths.
 fn dimension(label: &str) -> Option<Dimension> {
     let mut all = Dimension { force: 0, length: 0, size: 1.0 };
     for (index, part) in label.split('/').enumerate() {

@@ -5,7 +5,7 @@ use super::{BarPlace, Names, Quantity, ResultantPart, fits};
 use crate::model::structure::Dimension;
 use crate::model::words::{did_you_mean_typed, no_such};
 
-/// Words that are no quantity.
+/// Words that are not a quantity.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct QuantityError(pub String);
@@ -61,7 +61,7 @@ fn quoted(word: &str) -> Option<Vec<String>> {
     (words.len() > 1 && entry(&words[0]).is_some()).then_some(words)
 }
 
-/// Reads a quantity that is no probe.
+/// Reads a quantity that is not a probe.
 fn read_words<'w>(
     first: &str,
     rest: &'w [String],
@@ -180,7 +180,7 @@ fn known_place(what: &str, name: &str, names: &Names<'_>, others: &[&str]) -> Re
         return Ok(());
     }
     if names.nodes.is_empty() {
-        return error(format!("no {what} `{name}`: this scenario is no structure"));
+        return error(format!("no {what} `{name}`: this scenario has no structure"));
     }
     // In order: of equally near names always the same one is told.
     let mut all: Vec<&str> = names.nodes.iter().chain(others).copied().collect();
@@ -205,7 +205,7 @@ fn bar<'w>(
     match rest {
         [at, distance, rest @ ..] if at == "at" => match distance.parse::<f64>() {
             Ok(distance) if distance.is_finite() => found(BarPlace::At(distance), rest),
-            _ => error(format!("`{distance}` is no distance from the start of {name}")),
+            _ => error(format!("`{distance}` is not a distance from the start of {name}")),
         },
         [place, rest @ ..] if place == "start" => found(BarPlace::Start, rest),
         [place, rest @ ..] if place == "end" => found(BarPlace::End, rest),
@@ -444,7 +444,7 @@ mod tests {
             ("x_n joint[*]", "put sum, max or min before it"),
             ("x_n", "`x_n` of what? Write `x_n PAIR`"),
             ("M CD", "no bar `CD`"),
-            ("M AB at x", "`x` is no distance"),
+            ("M AB at x", "`x` is not a distance"),
             ("sum M AB", "expected a number of pairs"),
             ("sum x_n d*", "no pair `d*`"),
             ("count opne", "no state `opne` (did you mean `open`?)"),

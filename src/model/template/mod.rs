@@ -94,7 +94,7 @@ pub struct Choice {
 #[derive(Debug, Error)]
 pub enum TemplateError {
     /// No such kind.
-    #[error("`{kind}` is no kind of structure{near}: the kinds are {known} (`new` lists them with their names)")]
+    #[error("`{kind}` is not a kind of structure{near}: the kinds are {known} (`new` lists them with their names)")]
     Kind {
         /// The word.
         kind: String,

@@ -54,7 +54,7 @@ fn a_value_stands_in_the_text_and_its_slider_reaches_it() {
 #[test]
 fn what_cannot_be_is_refused_with_what_can() {
     for (kind, given, said) in [
-        ("portla", &[][..], &["`portla` is no kind", "did you mean `portal`", "press-fit"][..]),
+        ("portla", &[][..], &["`portla` is not a kind", "did you mean `portal`", "press-fit"][..]),
         ("portal", &[("hh", "3")], &["portal has no `hh`", "L, h, b, q"]),
         ("portal", &[("k", "3")], &["portal has no `k`", "L, h, b, q"]),
         ("portal", &[("L", "x")], &["`L` is the span", "a number greater than 0", "`x`"]),

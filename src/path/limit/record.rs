@@ -117,7 +117,7 @@ impl Limit {
             None if self.confirmed => {
                 "confirmed: a run of its own finds an answer at 0.999999 of it and none at 1.000001".to_owned()
             }
-            None => "not confirmed: runs of their own at 0.999999 and 1.000001 of it do not tell an answer and none"
+            None => "not confirmed: runs of their own at 0.999999 and 1.000001 of it do not tell an answer from none"
                 .to_owned(),
         }
     }

@@ -312,8 +312,8 @@ impl Map {
         }
         if !self.exact {
             self.notes.push(format!(
-                "no exact path leads over {}: its lines are answers of their own, each change between two of them \
-                 narrowed by halving; what happens twice between two of them is not seen",
+                "no exact path leads over {}: the places on its lines were solved one by one, and each change between \
+                 two of them was narrowed by halving; what comes and goes between two of them is not seen",
                 self.axes[self.along].name
             ));
         }

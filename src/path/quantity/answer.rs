@@ -8,7 +8,7 @@ use crate::model::quantity::OfAnswer;
 impl Facts<'_> {
     pub(super) fn of_the_answer(&self, which: OfAnswer) -> Result<Value, NoValue> {
         let count = |count: usize| Ok(Value::Number(count as f64));
-        let size = |size: Option<usize>| size.map_or_else(|| none("the scenario is no structure"), count);
+        let size = |size: Option<usize>| size.map_or_else(|| none("the scenario has no structure"), count);
         match which {
             OfAnswer::Outcome => Ok(Value::Word(self.answer()?.outcome.word().to_owned())),
             OfAnswer::Class => Ok(Value::Word(self.ray()?.class.word().to_owned())),

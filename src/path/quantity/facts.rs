@@ -128,7 +128,7 @@ impl<'a> Facts<'a> {
     pub(super) fn structure(&self) -> Result<(&'a Structure, &'a MainSystem), NoValue> {
         match self.prepared.map(|prepared| &*prepared.geometry) {
             Some(Geometry::Structure { main, structure, .. }) => Ok((structure, main)),
-            Some(_) => none("the scenario is no structure"),
+            Some(_) => none("the scenario has no structure"),
             None => Err(self.missing()),
         }
     }

@@ -8,7 +8,7 @@ use crate::model::quantity::OfNode;
 use crate::model::vector::length;
 
 impl OfNode {
-    /// Of a displaced node; `None` for components of a reaction.
+    /// Of a displaced node, a length or radians; `None` for components of a reaction.
     pub fn of(self, node: &NodeDisplacement) -> Option<f64> {
         self.displaced().map(|component| node.all()[component as usize])
     }

@@ -9,7 +9,7 @@ use crate::model::quantity::OfStress;
 use crate::model::structure::Structure;
 
 impl OfStress {
-    /// Of a stress.
+    /// Of a stress, force per area, tension > 0.
     pub fn of(self, stress: &Stress) -> f64 {
         match self {
             OfStress::X => stress.sx,

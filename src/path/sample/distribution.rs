@@ -27,12 +27,12 @@ pub struct Distribution {
     pub least: Option<f64>,
 }
 
-/// Words that are no distribution.
+/// Words that are not a distribution.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DistributionError {
     /// Not of the form expected.
     #[error(
-        "`{0}` is no distribution: expected uniform(LEAST, GREATEST), normal(MEAN, DEVIATION), lognormal(MEAN, DEVIATION) or \
+        "`{0}` is not a distribution: expected uniform(LEAST, GREATEST), normal(MEAN, DEVIATION), lognormal(MEAN, DEVIATION) or \
          triangular(LEAST, LIKELIEST, GREATEST)"
     )]
     Form(String),

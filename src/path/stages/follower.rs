@@ -61,12 +61,12 @@ pub(super) trait Follower<'a> {
     /// Displacements and forces of the joints there.
     fn state(&self) -> JointState;
 
-    /// What belongs to the way there from the moment before, where that is no straight line.
+    /// What belongs to the way there from the moment before, where that is not a straight line.
     fn integrals(&self) -> Option<Integrals> {
         None
     }
 
-    /// What it may be wrong by there, as a share of the largest displacement, where the way is no straight line.
+    /// What it may be wrong by there, as a share of the largest displacement, where the way is not a straight line.
     fn estimated_error(&self) -> Option<f64> {
         None
     }

@@ -38,7 +38,7 @@ use crate::solve::problem::{contact_problem, factors};
 /// Follows the stages of the scenario from the unloaded structure.
 ///
 /// # Errors
-/// No stages; a state that cannot be found; see [`PathError`]. A limit load on the way is no error.
+/// No stages; a state that cannot be found; see [`PathError`]. A limit load on the way is not an error.
 pub fn follow(case: Case<'_>) -> Result<History, PathError> {
     let Case { scenario, prepared, values, .. } = case;
     if scenario.stages.is_empty() {

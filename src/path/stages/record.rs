@@ -24,7 +24,7 @@ pub struct Moment {
     pub(in crate::path) way: Vec<(State, Option<State>)>,
     /// Total z and λ over the joints.
     pub(in crate::path) state: JointState,
-    /// What belongs to the way here and not to its ends, where it is no straight line; z is the mean one.
+    /// What belongs to the way here and not to its ends, where it is not a straight line; z is the mean one.
     pub(super) curve: Option<Integrals>,
 }
 
@@ -57,7 +57,7 @@ pub struct StageResult {
 }
 
 impl StageResult {
-    /// Factors of the load cases at its end.
+    /// Factors of the load cases at its end, without a unit.
     pub fn factors(&self) -> &[f64] {
         self.moments.last().map_or(&[], |end| &end.factors)
     }

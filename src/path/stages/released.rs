@@ -20,7 +20,7 @@ pub(super) struct Released {
 impl Released {
     /// R_FF is positive definite but for the motions of the kernel that need no other joint; these are held at rest by
     /// an added stiffness, which changes no solution whose load does no work on them. `None` where R_FF is not even
-    /// that: its data are no condensed stiffness.
+    /// that: its data are not a condensed stiffness.
     pub(super) fn new(system: &ContactSystem, joints: Vec<usize>) -> Option<Released> {
         let loose = loose_motions(system, &joints);
         let r = &system.stiffness;

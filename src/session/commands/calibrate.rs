@@ -128,7 +128,7 @@ impl Session {
     /// Whether the measurements belong to the load history.
     ///
     /// # Errors
-    /// What is no measurement of a state; errors of some only; several kinds without errors.
+    /// What is not a measurement of a state; errors of some only; several kinds without errors.
     fn judge(&self, measured: &[Measurement]) -> Result<bool, CommandError> {
         fn inner(quantity: &Quantity) -> &Quantity {
             match quantity {

@@ -178,7 +178,7 @@ impl Session {
             [name, span] => (name, span, MOST),
             [name, span, count] => match count.parse::<usize>() {
                 Ok(most @ 1..=100_000) => (name, span, most),
-                _ => return refused(format!("cycle: `{count}` is no number of cycles; expected 1 to 100000")),
+                _ => return refused(format!("cycle: `{count}` is not a number of cycles; expected 1 to 100000")),
             },
             _ => {
                 return refused(

@@ -130,7 +130,7 @@ impl Session {
                 (bound.to_string(), number.as_f64().is_some_and(|number| bound.holds(number)))
             }
             (Json::Array(_) | Json::Object(_), _) => {
-                return refused(format!("expect: {key} is no single value: {}", shown(found)));
+                return refused(format!("expect: {key} is not a single value: {}", shown(found)));
             }
             (_, [sign, word]) if sign == "=" || sign == "!=" => {
                 (format!("{sign} {word}"), (shown(found) == *word) == (sign == "="))

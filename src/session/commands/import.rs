@@ -10,7 +10,7 @@ use crate::export::lcp;
 use crate::model::siconos;
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session, worker};
-use crate::text::file::read_text;
+use crate::text::file::{read_text, reason};
 use crate::watch::Watch;
 
 /// Turn an LCP of Siconos (FILE.dat: dense, sparse or in blocks) into a scenario
@@ -50,7 +50,8 @@ pub fn import(file: &Path, watch: &dyn Watch) -> Result<(PathBuf, usize), Comman
     }
     let path = file.to_owned();
     let found = worker::run(watch, move |_| {
-        let text = read_text(&path).map_err(|error| format!("import: cannot read {}: {error}", path.display()))?;
+        let text =
+            read_text(&path).map_err(|error| format!("import: cannot read {}: {}", path.display(), reason(&error)))?;
         siconos::read(&text).map_err(|error| format!("import: {}:{}: {}", path.display(), error.line, error.message))
     });
     let found = found?.map_err(refused)?;
@@ -60,7 +61,7 @@ pub fn import(file: &Path, watch: &dyn Watch) -> Result<(PathBuf, usize), Comman
         refused(if error.kind() == std::io::ErrorKind::AlreadyExists {
             format!("import: {} exists already and stays as it is: move it away first", target.display())
         } else {
-            format!("import: cannot write {}: {error}", target.display())
+            format!("import: cannot write {}: {}", target.display(), reason(&error))
         })
     })?;
     let mut out = BufWriter::new(created);
@@ -69,7 +70,7 @@ pub fn import(file: &Path, watch: &dyn Watch) -> Result<(PathBuf, usize), Comman
     if let Err(error) = written {
         // Half a scenario would be refused later; the file is ours.
         let _ = std::fs::remove_file(&target);
-        return Err(refused(format!("import: cannot write {}: {error}", target.display())));
+        return Err(refused(format!("import: cannot write {}: {}", target.display(), reason(&error))));
     }
     Ok((target, found.q.len()))
 }

@@ -88,7 +88,7 @@ impl Session {
                     return refused("map: one quantity after `of`");
                 };
                 if !quantity.is_of_state() {
-                    return refused(format!("map: `{quantity}` is no quantity of a single state"));
+                    return refused(format!("map: `{quantity}` is not a quantity of a single state"));
                 }
                 (&words[..at], Some(quantity.clone()))
             }

@@ -78,7 +78,7 @@ impl Session {
             Some(text) => {
                 let bad = || {
                     CommandError::Refused(format!(
-                        "pivots: `{text}` is no range; expected K, FROM..TO, FROM.. or ..TO with 0 … {last}"
+                        "pivots: `{text}` is not a range; expected K, FROM..TO, FROM.. or ..TO with 0 … {last}"
                     ))
                 };
                 let end = |word: &str, open: usize| match word.trim() {
@@ -116,7 +116,7 @@ impl Session {
         let count = |word: &str| {
             word.parse::<usize>().map_err(|_| {
                 CommandError::Refused(format!(
-                    "step: `{word}` is no number of pivots; expected N, back N, to K, first or last"
+                    "step: `{word}` is not a number of pivots; expected N, back N, to K, first or last"
                 ))
             })
         };

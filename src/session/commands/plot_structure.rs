@@ -235,5 +235,5 @@ impl Session {
 }
 
 fn not_a_structure() -> CommandError {
-    CommandError::Refused("the scenario is no structure: there is nothing to draw".into())
+    CommandError::Refused("the scenario has no structure: there is nothing to draw".into())
 }

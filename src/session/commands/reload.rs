@@ -11,6 +11,7 @@ use crate::session::language::command::{Action, Command};
 use crate::session::language::setting::{RULES, rules_of};
 use crate::session::language::tokens;
 use crate::session::{CommandError, Next, Output, Session, Setup, load};
+use crate::text::file::reason;
 use crate::text::number::short;
 
 /// Open the file of the scenario in your editor; read it again when that ends
@@ -145,8 +146,8 @@ impl Session {
             return Ok(());
         }
         Err(CommandError::Refused(format!(
-            "`{command}` {does}, for which somebody has to sit at a terminal that understands cursor codes: type it at \
-             the prompt there; in a script and on a pipe it is refused, `reload` is not"
+            "`{command}` {does}, which needs somebody at a terminal that understands cursor codes: in a script and \
+             on a pipe it is refused, `reload` is not"
         )))
     }
 }
@@ -246,7 +247,10 @@ pub fn open_editor(path: &Path) -> Result<(), CommandError> {
     };
     let ended = std::process::Command::new(program).args(arguments).arg(path).status();
     let status = ended.map_err(|error| {
-        failed(format!("cannot start `{program}`: {error}; set the variable VISUAL or EDITOR to your editor"))
+        failed(format!(
+            "cannot start `{program}`: {}; set the variable VISUAL or EDITOR to your editor",
+            reason(&error)
+        ))
     })?;
     if status.success() {
         return Ok(());

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use clap::{Args, ValueEnum};
 
 use crate::model::embedded;
+use crate::text::file::reason;
 use crate::text::hash::Hash;
 
 use crate::session::journal::{Chosen, Record};
@@ -273,5 +274,5 @@ impl Session {
 
 fn not_kept(error: &std::io::Error) -> String {
     let folder = places::state().unwrap_or_default();
-    format!("a crash would lose this change: the journal in {} cannot be written: {error}", folder.display())
+    format!("a crash would lose this change: the journal in {} cannot be written: {}", folder.display(), reason(error))
 }

@@ -109,7 +109,7 @@ fn count(word: &str) -> Option<Result<usize, CommandError>> {
     Some(if whole {
         Ok(number as usize)
     } else {
-        refused(format!("sample: `{word}` is no number of points; expected a whole number from 2 to 1e9"))
+        refused(format!("sample: `{word}` is not a number of points; expected a whole number from 2 to 1e9"))
     })
 }
 
@@ -123,7 +123,7 @@ impl Session {
             return refused("sample: expected a quantity after `of`, e.g. `sample f=uniform(0.2,0.6) of max u`");
         }
         if let Some(quantity) = quantities.iter().find(|quantity| !quantity.is_of_state()) {
-            return refused(format!("sample: `{quantity}` is no quantity of a single state"));
+            return refused(format!("sample: `{quantity}` is not a quantity of a single state"));
         }
         let mut request =
             Request { variables: Vec::new(), count: None, seed: asked.seed, quantities, crude: asked.crude };

@@ -55,8 +55,8 @@ fn full_screen(session: &Session, tour: Option<Tour>, io: &Output<'_>) -> Result
     if session.depth > 0 || !io.has_screen {
         let word = if tour.is_some() { TOUR.name } else { TUI.name };
         return Err(CommandError::Refused(format!(
-            "`{word}` opens the full screen, which needs a terminal that understands cursor codes: type it at the \
-             prompt there; in a script and on a pipe it is refused"
+            "`{word}` opens the full screen, which needs a terminal that understands cursor codes: in a script \
+             and on a pipe it is refused"
         )));
     }
     Ok(Next::FullScreen { tour })

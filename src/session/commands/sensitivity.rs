@@ -57,7 +57,7 @@ impl Session {
             && !found.parameters.iter().any(|rate| rate.parameter == name)
         {
             let place = place_beside_laws(&self.now.scenario, name).unwrap_or_default();
-            return Err(no_derivatives(name, &format!("the loads are no linear function of it: {place}")));
+            return Err(no_derivatives(name, &format!("the loads are not a linear function of it: {place}")));
         }
         io.show(&found, |out, style| view::sensitivity::write(out, &found, parameter, style))?;
         Ok(())

@@ -272,13 +272,13 @@ fn axes(words: &[String]) -> Result<Vec<Axis>, CommandError> {
             word.parse::<f64>()
                 .ok()
                 .filter(|value| value.is_finite())
-                .ok_or_else(|| CommandError::Refused(format!("sweep: `{word}` is no number")))
+                .ok_or_else(|| CommandError::Refused(format!("sweep: `{word}` is not a number")))
         };
         let (count, after) = match after.split_first() {
             Some((word, after)) if word.parse::<f64>().is_ok() => {
                 let count = word
                     .parse::<usize>()
-                    .map_err(|_| CommandError::Refused(format!("sweep: `{word}` is no number of points")))?;
+                    .map_err(|_| CommandError::Refused(format!("sweep: `{word}` is not a number of points")))?;
                 (count, after)
             }
             _ => (POINTS, after),

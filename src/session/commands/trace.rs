@@ -85,7 +85,7 @@ impl Session {
         let (to, words) = match words {
             [word, value, rest @ ..] if word == "to" => {
                 let to = value.parse::<f64>();
-                (Some(to.map_err(|_| CommandError::Refused(format!("trace: `{value}` is no number")))?), rest)
+                (Some(to.map_err(|_| CommandError::Refused(format!("trace: `{value}` is not a number")))?), rest)
             }
             words => (None, words),
         };

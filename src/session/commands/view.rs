@@ -63,7 +63,7 @@ impl Action for View {
 /// A name, or two angles.
 fn read(words: &[String]) -> Result<Viewpoint, CommandError> {
     let expected = "expected ISO, XY, XZ, YZ, or azimuth and elevation in degrees (elevation from -90 to 90)";
-    let refused = || CommandError::Refused(format!("view: `{}` is no view; {expected}", words.join(" ")));
+    let refused = || CommandError::Refused(format!("view: `{}` is not a view; {expected}", words.join(" ")));
     match words {
         [name] => Viewpoint::named(name).ok_or_else(refused),
         [azimuth, elevation] => {

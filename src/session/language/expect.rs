@@ -64,7 +64,7 @@ pub enum Expectation {
     Error(String),
 }
 
-/// Words that are no expectation.
+/// Words that are not an expectation.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("expect: {what}; see `help expect`")]
 pub struct ExpectationSyntax {
@@ -117,7 +117,7 @@ pub fn read(words: &[String], names: &Names<'_>, values: &ParameterValues) -> Re
         match rest {
             [word] if allowed.contains(&word.as_str()) => Ok(word.clone()),
             [word] => Err(bad(format!(
-                "`{word}` is no {subject}{}: expected {}",
+                "`{word}` is not a {subject}{}: expected {}",
                 did_you_mean_typed(word, allowed.iter().copied()),
                 allowed.join(", ")
             ))),
@@ -169,7 +169,7 @@ pub fn bound(words: &[String], values: &ParameterValues) -> Result<Bound, Expect
     let text = words.join(" ");
     let bad = || ExpectationSyntax {
         what: format!(
-            "`{text}` is no comparison: expected one of = != < <= > >= and a number or a formula of the parameters, after \
+            "`{text}` is not a comparison: expected one of = != < <= > >= and a number or a formula of the parameters, after \
              `=` also `± TOLERANCE`"
         ),
     };

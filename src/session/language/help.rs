@@ -19,7 +19,7 @@ pub fn overview(style: &Style) -> String {
             text.push('\n');
         }
     };
-    add("", "One command a line; `;` separates, `#` begins a comment, unique prefixes work.");
+    add("", "One command per line; `;` separates, `#` begins a comment, unique prefixes work.");
     for (group, commands) in GROUPS {
         add("", "");
         add("", group);

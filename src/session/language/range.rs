@@ -27,7 +27,7 @@ pub fn either_way(word: &str, command: &str) -> Result<[f64; 2], CommandError> {
     match ends {
         Some([from, to]) if from == to => refused(format!("the range {from}..{to} is empty: its ends are the same")),
         Some(ends) => Ok(ends),
-        None => refused(format!("`{word}` is no range; expected A..B, e.g. 0..1")),
+        None => refused(format!("`{word}` is not a range; expected A..B, e.g. 0..1")),
     }
 }
 

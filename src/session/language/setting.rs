@@ -33,7 +33,7 @@ pub enum SetError {
     },
     /// No number.
     #[error(
-        "`{text}` is no value for {name}: expected a number, `110%`, `+10%`, `-10%`, or one of += -= *= /= and a number"
+        "`{text}` is not a value for {name}: expected a number, `110%`, `+10%`, `-10%`, or one of += -= *= /= and a number"
     )]
     NoNumber {
         /// The parameter.
@@ -180,7 +180,7 @@ pub fn read(words: &[String], scenario: &Scenario, values: &ParameterValues) -> 
     }
 }
 
-/// The error for a name that is no parameter.
+/// The error for a name that is not a parameter.
 pub fn unknown_parameter(name: &str, scenario: &Scenario) -> SetError {
     let names: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
     let rules: Vec<&str> = rules_of(scenario.source.dimension()).map(|rule| rule.name).chain(["auto"]).collect();

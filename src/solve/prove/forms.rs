@@ -165,7 +165,7 @@ impl Branch {
 }
 
 /// Of a contact system with this R. Forms pair by pair: x_n, then x_t of a frictionless one, else the reserves and, in space,
-/// turn^k of the facets that are no mirrors.
+/// turn^k of the facets that are not mirrors.
 pub(super) fn of_contact(contact: &ProvedContact, stiffness: &[Vec<BigRational>]) -> Forms {
     let force = |joint: usize| -> Vec<BigRational> {
         let row = &stiffness[joint];

@@ -99,7 +99,7 @@ pub fn command(state: &State) -> Option<Result<String, String>> {
     let (drawn, at) = (drawn(state)?, cursor(state)?);
     let axes = &drawn.map.axes;
     if let Some(axis) = axes.iter().find(|axis| state.shown.values.get(&axis.name).is_none()) {
-        let why = format!("{} is a load case: its factor is no parameter that could be set", axis.name);
+        let why = format!("{} is a load case: its factor is not a parameter that can be set", axis.name);
         return Some(Err(why));
     }
     let set = |axis: usize| format!("set {} {}", quote(&axes[axis].name), at[axis]);

@@ -29,7 +29,7 @@ pub(super) fn forget(state: &mut State) {
             state.gauges_at = None;
         }
         None if state.quantity < probes => state.say(Role::Warning, "a probe belongs to the scenario: it stays"),
-        None => state.say(Role::Warning, "nobody asked for this one: it is shown while nothing else is"),
+        None => state.say(Role::Warning, "this one was not asked for: it is shown while nothing else is"),
     }
 }
 

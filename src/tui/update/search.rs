@@ -30,7 +30,7 @@ pub(super) fn follow(state: &mut State) -> Vec<Effect> {
 /// The next or the last row that contains what was sought.
 pub(super) fn again(state: &mut State, forward: bool) -> Vec<Effect> {
     if state.sought.is_empty() {
-        state.say(Role::Warning, "nothing was sought yet: / begins a search");
+        state.say(Role::Warning, "nothing was searched for yet: / begins a search");
         return Vec::new();
     }
     let (text, count) = (state.sought.clone(), rows(state).len().max(1));

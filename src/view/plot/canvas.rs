@@ -53,12 +53,12 @@ impl Canvas {
         Canvas { columns, rows, cells: vec![None; columns * rows], inks: Vec::new(), labels: Vec::new() }
     }
 
-    /// Largest x of a dot.
+    /// Largest x of a dot, in dots.
     pub fn dots_x(&self) -> f64 {
         (2 * self.columns - 1) as f64
     }
 
-    /// Largest y of a dot.
+    /// Largest y of a dot, in dots.
     pub fn dots_y(&self) -> f64 {
         (4 * self.rows - 1) as f64
     }

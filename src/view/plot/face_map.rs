@@ -64,7 +64,7 @@ pub fn faces(
     units: &Units,
 ) -> (Vec<FaceMap>, Vec<PairState>) {
     let (mut maps, mut rest) = (Vec::new(), Vec::new());
-    // those of a face are `joint[0]`, `joint[1]` …; a contact of a single node is no face
+    // those of a face are `joint[0]`, `joint[1]` …; a contact of a single node is not a face
     let mut contacts: Vec<(Option<&str>, Vec<usize>)> = Vec::new();
     for (index, state) in states.iter().enumerate() {
         let name = state.id.split_once('[').map(|(name, _)| name);

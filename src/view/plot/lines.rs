@@ -93,7 +93,7 @@ impl<'a> Displaced<'a> {
         self.projection.seen(self.place(node))
     }
 
-    /// Place of a node in the picture.
+    /// Place of a node in the picture, in the unit of the coordinates: to the right and up.
     pub fn at(&self, node: usize) -> (f64, f64) {
         self.projection.flat(self.place(node))
     }
@@ -138,7 +138,7 @@ impl<'a> Displaced<'a> {
                 }
             }
         };
-        // what is no part of a plate or mesh, whose outlines are known
+        // what is not a part of a plate or mesh, whose outlines are known
         let plates = structure.plates.iter().map(|plate| &plate.elements);
         let mut bodies: Vec<&Range<usize>> = plates.chain(structure.meshes.iter().map(|mesh| &mesh.elements)).collect();
         bodies.sort_by_key(|elements| elements.start);

@@ -32,7 +32,7 @@ impl Drawn {
         Drawn { tail: on_line(tail), tip: on_line(tip), direction: Some((c, s)), comes: arrow.comes }
     }
 
-    /// Both ends.
+    /// Both ends, tail first, in the picture.
     pub fn ends(&self) -> [(f64, f64); 2] {
         [self.tail, self.tip]
     }

@@ -157,7 +157,7 @@ impl Loads {
                         let weight = weights.entry(owner[element]).or_default();
                         weight.add(middle, value.map(|b| factor * b * volume), cases);
                     }
-                    // They have no direction, or are no forces.
+                    // They have no direction, or are not forces.
                     Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
                 }
             }

@@ -317,7 +317,7 @@ pub(super) fn distances(data: &Data, history: &History, steps: usize) -> Option<
 }
 
 /// A step that contains an event is right to the order of what one step moves: small steps lead to the same ends if
-/// their distance falls with the step. How far they are apart at one number of steps is no measure, a frame that gives
+/// their distance falls with the step. How far they are apart at one number of steps is not a measure, a frame that gives
 /// way moves far in one step. Where in a step an event lies makes a factor of up to 4 of the 16 of the first order.
 pub(super) fn converges(distances: &[f64], steps: usize) -> bool {
     match distances {

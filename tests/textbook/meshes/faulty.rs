@@ -159,7 +159,7 @@ fn gmsh_2() {
         ("1 1 \"bottom\"", "1 1 bottom", 6, "expected dimension, number and \"name\" of a group"),
         ("1 1 \"bottom\"", "7 1 \"bottom\"", 6, "expected dimension, number and \"name\" of a group"),
         ("$PhysicalNames\n3", "$PhysicalNames\n4", 9, "found \"$EndPhysicalNames\""),
-        ("$Nodes\n", "$nodes\n", 10, "$nodes is no section (did you mean \"$Nodes\"?)"),
+        ("$Nodes\n", "$nodes\n", 10, "$nodes is not a section (did you mean \"$Nodes\"?)"),
         ("$EndElements\n", "", 27, "the file ends in the elements, before $EndElements"),
         ("$EndElements\n", "$EndElements\n$Nodes\n0\n$EndNodes\n", 28, "a second section $Nodes"),
         ("$EndElements\n", "$EndElements\n$NodeData\n0\n", 30, "the section $NodeData has no $EndNodeData"),
@@ -206,7 +206,7 @@ fn abaqus() {
     for (from, to, line, message) in [
         ("2, 1, 0", "1, 1, 0", 3, "duplicate node 1, first at a.inp:2"),
         ("2, 1, 0", "-2, 1, 0", 3, "expected the number of a node, found \"-2\""),
-        ("2, 1, 0", "2, abc, 0", 3, "node 2: x is no number, found \"abc\""),
+        ("2, 1, 0", "2, abc, 0", 3, "node 2: x is not a number, found \"abc\""),
         ("2, 1, 0", "2, nan, 0", 3, "node 2: x is NaN"),
         ("2, 1, 0", "2, 1", 3, "node 2 has no x and y"),
         ("2, 1, 0", "2 1 0", 3, "expected the number of a node, found \"2 1 0\""),
@@ -290,7 +290,7 @@ fn what_is_read() {
     // Two numbers of one name and dimension are one group; of two dimensions they are two.
     assert_eq!(lines(&gmsh(&changed(GMSH2, "\"top\"", "\"bottom\"")), "bottom"), [("lines", 4)]);
     assert_eq!(lines(&gmsh(&changed(GMSH2, "\"body\"", "\"bottom\"")), "bottom"), [("lines", 2), ("elements", 2)]);
-    // A name without members is no group, and is remembered.
+    // A name without members is not a group, and is remembered.
     let empty = gmsh(&GMSH2.replacen("1 2 \"top\"", "1 9 \"top\"", 1));
     assert!(lines(&empty, "top").is_empty());
     assert_eq!(empty.empty_group("top").map(|place| place.line), Some(7));

@@ -186,7 +186,7 @@ fn the_patch_test_passes_between_sides_of_every_kind() {
 }
 
 /// Along a parabola, which quadratic sides follow exactly, the traction of a uniform stress turns with the normal: its
-/// density along the side is no polynomial over the length, so it passes up to the order of the sides, not exactly.
+/// density along the side is not a polynomial over the length, so it passes up to the order of the sides, not exactly.
 #[test]
 fn the_patch_test_converges_between_curved_sides() {
     let (up, down) = (|_: f64| 1.2, |_: f64| -1.0);

@@ -181,7 +181,7 @@ impl FiniteElement for SpaceFrame {
         let load = BarLoad::of(acting, &self.axes, self.area);
         let all = self.with_left_out(u);
         let forces = load.forces_along(self.end_forces(&all, &load), self.axes.length);
-        forces.pieces.first()?; // there is none where the length is no number
+        forces.pieces.first()?; // there is none where the length is not a number
         let local = rotation(&self.axes) * all;
         let places: Vec<f64> = shares.iter().map(|share| share * self.axes.length).collect();
         let [y, z] = [(0, 1), (1, 2)].map(|(beam, row): (usize, usize)| {

@@ -49,7 +49,7 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
 fn settle(builder: &mut Builder<'_>) {
     let mut reported: Option<Cursor<'_>> = None;
     for Settlement { case, node, component, value } in std::mem::take(&mut builder.settlements) {
-        // A name that is no string was reported.
+        // A name that is not a string was reported.
         let Some(name) = case.string() else { continue };
         let cases = &mut builder.structure.load_cases;
         if let Some(known) = cases.iter_mut().find(|known| known.name == name) {

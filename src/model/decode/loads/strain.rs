@@ -12,7 +12,7 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
         let is_bar = element.shape().dimension() == 1;
         if !is_bar {
             at.problem(
-                format!("{} is no bar: `strain` is the lack of fit of bars", at.quoted()),
+                format!("{} is not a bar: `strain` is the lack of fit of bars", at.quoted()),
                 "name bars; plates expand by `temperature`",
             );
         }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::super::source::shown;
 use super::super::{MeshProblem, Place, file};
-use crate::text::file::LARGEST;
+use crate::text::file::{LARGEST, reason};
 
 /// At most so many files are open in one another, and read in all.
 const DEEPEST: usize = 20;
@@ -65,7 +65,7 @@ fn split(text: &str) -> Vec<&str> {
     .collect()
 }
 
-/// A line that is no comment.
+/// A line that is not a comment.
 pub enum Card {
     Keyword(Keyword),
     /// The fields of a data line, trimmed, and whether it goes on in the next one.
@@ -129,7 +129,7 @@ impl<'a> Cards<'a> {
             ));
         }
         let bytes = file::read(&path).map_err(|error| {
-            let message = format!("cannot read the file {shown_name} that is included here: {error}");
+            let message = format!("cannot read the file {shown_name} that is included here: {}", reason(&error));
             self.problem(place, message, "it is looked for beside the mesh file")
         })?;
         self.total += bytes.len() as u64;

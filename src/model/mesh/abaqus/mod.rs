@@ -74,7 +74,7 @@ pub fn read(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<RawMesh, 
                 return Err(reader.cards.problem(
                     place,
                     "expected a keyword like *NODE",
-                    "this is no input file of Abaqus or CalculiX, or its beginning is missing",
+                    "this is not an input file of Abaqus or CalculiX, or its beginning is missing",
                 ));
             }
             Card::Data { fields, goes_on, place } => reader.data(&fields, goes_on, place)?,
@@ -276,7 +276,7 @@ impl Reader<'_> {
         }
         let mut position = [0.0; 3];
         for ((x, field), axis) in position.iter_mut().zip(&fields[1..]).zip(["x", "y", "z"]) {
-            *x = number(field).ok_or_else(|| wrong(&format!("node {tag}: {axis} is no number"), field))?;
+            *x = number(field).ok_or_else(|| wrong(&format!("node {tag}: {axis} is not a number"), field))?;
         }
         self.mesh.add_node(tag, position, place)?;
         if let Some(set) = set {

@@ -61,7 +61,7 @@ pub fn read(bytes: &[u8], name: &str) -> Result<RawMesh, MeshProblem> {
                 let known = ["Nodes", "Elements", "PhysicalNames", "Entities"];
                 if let Some(meant) = known.iter().find(|known| known.eq_ignore_ascii_case(other)) {
                     return Err(source.problem(
-                        format!("${} is no section (did you mean \"${meant}\"?)", printable(other)),
+                        format!("${} is not a section (did you mean \"${meant}\"?)", printable(other)),
                         "names of sections are spelled with capitals",
                     ));
                 }
@@ -128,7 +128,7 @@ fn header(source: &mut Source<'_>) -> Result<Version, MeshProblem> {
                 return Err(source.line_problem(
                     "$MeshFormat",
                     line,
-                    "this is no mesh of Gmsh, or its beginning is missing",
+                    "this is not a mesh of Gmsh, or its beginning is missing",
                 ));
             }
             None => {

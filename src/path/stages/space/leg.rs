@@ -61,7 +61,7 @@ pub(super) enum Taken {
 /// What legs are measured by: displacements of all joints are compared by the root of their stiffness, R_ii.
 pub(super) struct Measure {
     scale: DVector<f64>,
-    /// Joints without stiffness of their own, whose forces are no measure of any displacement.
+    /// Joints without stiffness of their own, whose forces are not a measure of any displacement.
     rigid: Vec<bool>,
     /// The largest scaled displacement so far, those included that forces would cause where they are held.
     size: f64,

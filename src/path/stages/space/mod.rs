@@ -46,7 +46,7 @@ const LONGEST: f64 = 0.125;
 const EASY: usize = 6;
 /// No stage has more legs than this.
 const LEGS: usize = 50_000;
-/// Events that follow one another so often are crossed in longer and longer steps.
+/// After so many events in a row they are crossed in longer and longer steps.
 const CROWDED: usize = 4;
 /// A collapse is certified this part of a stage further on.
 const CERTIFIED_AT: f64 = 1e-6;
@@ -396,7 +396,7 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
                     h = if rows <= EASY { h.max(2.0 * length) } else { length };
                 }
                 Err(found) => {
-                    // A leg has a short step at its end: it shall end at the event, from where that is crossed.
+                    // A leg has a short step at its end: it has to end at the event, from where that is crossed.
                     let (length, change) = match found {
                         Ahead::Change(length) => (length - SHORT, Some(length)),
                         Ahead::Shorter(length) => (length, None),

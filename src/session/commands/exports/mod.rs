@@ -150,7 +150,7 @@ impl Session {
         Ok(io.say(&format!("wrote {}", path.display()))?)
     }
 
-    /// Refuses to write what is no scenario over a file that is one.
+    /// Refuses to write what is not a scenario over a file that is one.
     pub(in crate::session) fn spare_scenarios(&self, path: &Path) -> Result<(), CommandError> {
         self.spare_scenario(path)?;
         if fs::metadata(path).is_ok_and(|file| file.is_file()) && is_scenario(path) {

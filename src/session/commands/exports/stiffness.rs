@@ -12,7 +12,7 @@ impl Session {
     pub(super) fn export_stiffness(&self, path: &Path, io: &mut Output<'_>) -> Result<(), CommandError> {
         let refused = |text: &str| CommandError::Refused(text.to_owned());
         let structure = self.structure().ok_or_else(|| {
-            refused("no stiffness matrix: the scenario is no structure; `export lcp` writes the problem itself")
+            refused("no stiffness matrix: the scenario has no structure; `export lcp` writes the problem itself")
         })?;
         if !structure.yielding_ground.is_empty() {
             return Err(refused(

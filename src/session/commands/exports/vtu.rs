@@ -16,7 +16,7 @@ impl Session {
     pub(super) fn export_vtu(&self, path: &Path, series: bool, io: &Output<'_>) -> Result<(), CommandError> {
         self.need_quantities()?;
         if self.structure().is_none() {
-            return Err(CommandError::Refused("no mesh: the scenario is no structure".to_owned()));
+            return Err(CommandError::Refused("no mesh: the scenario has no structure".to_owned()));
         }
         if !series {
             return self.with_facts(io.watch, |facts| write(facts, path));
