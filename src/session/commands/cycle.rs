@@ -252,7 +252,7 @@ impl Session {
             return refused(match words[0] {
                 "all" => format!("cycle: `from all` chooses the slips itself; `{other}` is one too many"),
                 _ if pairs.contains(other) => format!("cycle: how far has {other} slipped? e.g. `from {other}=0.001`"),
-                _ => format!("cycle: `{other}` is no slip; {form}"),
+                _ => format!("cycle: `{other}` is not a slip; {form}"),
             });
         }
         if !named {
@@ -269,7 +269,7 @@ impl Session {
         let mut slips: Vec<Option<f64>> = vec![None; pairs.len()];
         for word in words {
             let Some((pattern, slip)) = word.split_once('=').and_then(|(id, slip)| Some((id, number(slip)?))) else {
-                return refused(format!("cycle: `{word}` is no slip; expected PAIR=SLIP, e.g. `c1=0.001`"));
+                return refused(format!("cycle: `{word}` is not a slip; expected PAIR=SLIP, e.g. `c1=0.001`"));
             };
             let fitting = pairs.iter().enumerate().filter(|(_, id)| fits(pattern, id));
             let fitting: Vec<usize> = fitting.map(|(index, _)| index).collect();
