@@ -266,8 +266,8 @@ fn slips_that_cannot_be_are_refused() {
     for (command, part) in [
         ("cycle L 0..0.8 from", "expected `from all`"),
         ("cycle L 0..0.8 from 1", "expected 2 slips behind `from`, one for each pair, found 1"),
-        ("cycle L 0..0.8 from a=1 2", "`2` is no slip; expected PAIR=SLIP"),
-        ("cycle L 0..0.8 from a=nan", "`a=nan` is no slip"),
+        ("cycle L 0..0.8 from a=1 2", "`2` is not a slip; expected PAIR=SLIP"),
+        ("cycle L 0..0.8 from a=nan", "`a=nan` is not a slip"),
         ("cycle L 0..0.8 from d=1", "no pair `d`"),
         ("cycle L 0..0.8 from everything", "expected `from all`"),
         ("cycle L 0..0.8 from a", "how far has a slipped? e.g. `from a=0.001`"),
