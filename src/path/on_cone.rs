@@ -17,7 +17,7 @@ use super::load_parameter::LoadParameter;
 use super::start::PathError;
 use super::{friction, start};
 use crate::answer::pairs::pairs_in_space;
-use crate::answer::record::PairState;
+use crate::answer::record::{PairState, State};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::explain::certificate::certify;
@@ -347,6 +347,9 @@ impl Path<'_> {
         let mut changes = between(ids, &before.step.scheme, &after.step.scheme);
         with_directions(&mut changes, &there.pairs);
         let place = path.places.len() - 1;
+        if !jump {
+            path.places[place].pairs.iter_mut().zip(&there.pairs).for_each(|(before, after)| settle(before, after));
+        }
         if !changes.is_empty() || jump {
             let sentence = sentence(&changes);
             path.breakpoints.push(Breakpoint { value: after.value, place, changes, jump, sentence });
@@ -361,6 +364,20 @@ impl Path<'_> {
 
 fn guess(here: &Stand, slope: Option<&DVector<f64>>, to: f64) -> DVector<f64> {
     slope.map_or_else(|| here.step.z.clone(), |slope| &here.step.z + slope * (to - here.value))
+}
+
+/// A pair that comes to rest at a breakpoint has there the slip that it keeps, and one that closes no gap: what is found of
+/// them just before it comes of the digits to which the place is located.
+fn settle(before: &mut PairState, after: &PairState) {
+    if (before.state, after.state) == (State::Slip, State::Stick) {
+        before.z_t = after.z_t;
+        if let (Some(before), Some(after)) = (&mut before.space, &after.space) {
+            before.z_t = after.z_t;
+        }
+    }
+    if before.state == State::Open && after.state != State::Open {
+        before.z_n = after.z_n;
+    }
 }
 
 /// z over the joints as pairs show it.

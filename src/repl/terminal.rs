@@ -69,7 +69,7 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
                     signals.take_interrupt();
                     input.waiting.clear();
                 }
-                let _ = writeln!(io::stderr(), "{}", style.error(&error.to_string()));
+                let _ = writeln!(io::stderr(), "{}", style.error_in_lines(&error.to_string()));
             }
         }
     }
@@ -244,7 +244,7 @@ fn edit(session: &mut Session, style: Style, signals: &Signals) {
     match edited {
         Ok(()) => reload(session, style, signals),
         Err(error) => {
-            let _ = writeln!(io::stderr(), "{}", style.error(&error.to_string()));
+            let _ = writeln!(io::stderr(), "{}", style.error_in_lines(&error.to_string()));
         }
     }
 }
@@ -261,7 +261,7 @@ fn reload(session: &mut Session, style: Style, signals: &Signals) {
                     format!("{} is gone: the last answer stays; it is read when it is there again", watched.name);
                 style.paint(Role::Warning, &style.text(&gone))
             }
-            None => style.error(&error.to_string()),
+            None => style.error_in_lines(&error.to_string()),
         };
         let _ = writeln!(io::stderr(), "{told}");
     }

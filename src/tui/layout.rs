@@ -4,7 +4,9 @@ use ratatui::layout::Rect;
 
 use super::app::State;
 use super::pane::Pane;
+use super::shown::Shown;
 use super::{panes, tour};
+use crate::model::structure::Dimension;
 
 /// No pane makes sense below this.
 pub const SMALLEST: (u16, u16) = (40, 12);
@@ -108,7 +110,7 @@ fn cut_columns(area: Rect, columns: u16) -> (Rect, Rect) {
 fn middle(state: &State, body: Rect, places: &mut Places) {
     let (left, right) = cut_columns(body, body.width - (body.width * 2 / 5).clamp(30, 44));
     let (parameters, pivots) = cut_rows(right, parameter_rows(state).min(right.height / 2));
-    if state.shown.structure().is_some_and(is_flat) {
+    if is_flat(&state.shown) {
         // a beam needs few rows: there is room for what happens along it
         let (structure, rest) = cut_rows(left, 8);
         let front = match state.tab {
@@ -133,7 +135,7 @@ fn middle(state: &State, body: Rect, places: &mut Places) {
 fn wide(state: &State, body: Rect, places: &mut Places) {
     let (left, right) = cut_columns(body, body.width - (body.width / 2).clamp(56, 90));
     let rows = match state.shown.structure() {
-        Some(structure) if !is_flat(structure) => left.height / 2,
+        Some(_) if !is_flat(&state.shown) => left.height / 2,
         Some(_) => left.height / 4,
         None if state.shown.pairs().is_empty() => 5,
         None => 9,
@@ -158,13 +160,10 @@ fn wide(state: &State, body: Rect, places: &mut Places) {
     places.tabs = (sides.len() > 1).then_some((side, sides));
 }
 
-/// Whether a structure is so low that it needs few rows.
-fn is_flat(structure: &crate::model::structure::Structure) -> bool {
-    let side = |axis: usize| {
-        let (low, high) = crate::view::plot::ticks::range(structure.nodes.iter().map(|node| node.position[axis]));
-        high - low
-    };
-    side(1) < 0.12 * side(0)
+/// Whether the structure is so low that it needs few rows; one in space is turned.
+fn is_flat(shown: &Shown) -> bool {
+    let in_plane = shown.structure().is_some_and(|structure| structure.dimension == Dimension::Plane);
+    in_plane && shown.skeleton().is_some_and(|skeleton| skeleton.side(1) < 0.12 * skeleton.side(0))
 }
 
 /// Where a pane stands, if it is shown.

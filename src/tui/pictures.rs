@@ -14,6 +14,8 @@ use super::pane::{Plot, SortKey};
 use super::shown::{Moment, Motion};
 use super::theme::Look;
 use super::viewport::Viewport;
+use crate::view::plot::loads::CaseLoads;
+use crate::view::plot::skeleton::Skeleton;
 use crate::view::projection::Viewpoint;
 
 /// What the table of the pairs shows: rows in an order, on a sheet.
@@ -28,6 +30,8 @@ pub struct Pictures {
     pub pairs: Kept<PairsKey, Listing>,
     /// Table of the pivots.
     pub pivots: Kept<(The<Solved>, Sheet), Listing>,
+    /// The loads of each case where the structure has them, and as it is displaced.
+    pub loads: Kept<(The<Skeleton>, The<Motion>), CaseLoads>,
     /// The structure.
     pub structure: Kept<StructureKey, StructurePicture>,
     /// The plots.

@@ -11,6 +11,7 @@ use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution
 use crate::session::{DrawnMap, Glance, History, Prepared, Remedies, Session, Solved};
 use crate::view::difference::{self, Change};
 use crate::view::plot::scene::{Magnification, factor, nodal};
+use crate::view::plot::skeleton::Skeleton;
 use crate::view::projection::Viewpoint;
 
 /// A session at one moment.
@@ -54,6 +55,8 @@ pub struct Shown {
     pub glance: Option<[f64; 2]>,
     /// Names for completion, gathered when the first letter asks for them.
     vocabulary: Arc<OnceLock<Vocabulary>>,
+    /// What pictures of the structure share, gathered for the first of them.
+    skeleton: Arc<OnceLock<Arc<Skeleton>>>,
 }
 
 /// The state at the place shown. It stays the same one until another answer or another pivot is shown, so that what is
@@ -97,7 +100,7 @@ impl Motion {
 
     /// `there`: displacements at a pivot on the way, or the mode of the ray shown.
     fn new(shown: &Shown, there: Option<Vec<NodeDisplacement>>) -> Self {
-        let Some(structure) = shown.structure() else { return Motion::default() };
+        let Some((structure, skeleton)) = shown.structure().zip(shown.skeleton()) else { return Motion::default() };
         let of_answer = |answer: &Answer| answer.displacements.as_deref().map(|u| nodal(structure, u));
         let end = shown.answer().and_then(of_answer);
         let u = match there {
@@ -109,7 +112,7 @@ impl Motion {
         let factors = if shown.at_ray() { Default::default() } else { shown.factors() };
         let moves = |u: &Vec<[f64; 6]>| u.iter().any(|u| u[..3] != [0.0; 3]);
         let measured = end.as_ref().filter(|end| moves(end) && !shown.at_ray()).or(u.as_ref());
-        let automatic = measured.map_or(1.0, |u| factor(structure, &factors[0], u, Magnification::Auto));
+        let automatic = measured.map_or(1.0, |u| factor((structure, skeleton), &factors[0], u, Magnification::Auto));
         Motion { before: before.filter(|before| u.as_ref() != Some(before)), u, factors, automatic }
     }
 }
@@ -147,7 +150,11 @@ impl Shown {
             map: session.last_map(),
             glance: None,
             vocabulary: Arc::default(),
+            skeleton: Arc::default(),
         };
+        if let Some(last) = last.filter(|last| last.has_structure_of(&shown)) {
+            shown.skeleton = Arc::clone(&last.skeleton);
+        }
         if let Some(history) = &shown.history {
             let kept = last.filter(|last| last.history.as_ref().is_some_and(|last| Arc::ptr_eq(last, history)));
             shown.stage = kept.and_then(|last| last.stage).or(history.stages.len().checked_sub(1));
@@ -195,9 +202,21 @@ impl Shown {
             glance: Some(at),
             ..last.clone()
         };
+        if !last.has_structure_of(&shown) {
+            shown.skeleton = Arc::default();
+        }
         shown.moment = Arc::new(Moment::of(session, &shown));
         shown.motion = Arc::new(Motion::new(&shown, glance.mode));
         shown
+    }
+
+    /// Whether the structure of both is one, with the same places of its nodes.
+    fn has_structure_of(&self, other: &Shown) -> bool {
+        match (&self.prepared, &other.prepared) {
+            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
+            (None, None) => Arc::ptr_eq(&self.scenario, &other.scenario),
+            _ => false,
+        }
     }
 
     fn is_same_moment(&self, other: &Shown) -> bool {
@@ -329,6 +348,12 @@ impl Shown {
             (None, Source::Structure(structure)) => Some(structure),
             (None, _) => None,
         }
+    }
+
+    /// What pictures of the structure share.
+    pub fn skeleton(&self) -> Option<&Arc<Skeleton>> {
+        let structure = self.structure()?;
+        Some(self.skeleton.get_or_init(|| Arc::new(Skeleton::of(structure))))
     }
 
     /// Step of the last pivot; a stage has none that led to its end alone.

@@ -1,8 +1,7 @@
 //! The part of the structure in view.
 
-use crate::model::structure::Structure;
 use crate::view::plot::canvas::Canvas;
-use crate::view::plot::ticks::range;
+use crate::view::plot::skeleton::Skeleton;
 use crate::view::projection::Projection;
 
 /// The part of the structure in view.
@@ -33,12 +32,10 @@ pub struct View {
 
 impl View {
     /// The view of `viewport` on a canvas; `None` where there is nothing to see.
-    pub fn new(structure: &Structure, projection: &Projection, viewport: Viewport, canvas: &Canvas) -> Option<View> {
-        let places: Vec<[f64; 3]> = structure.nodes.iter().map(|node| projection.seen(node.position)).collect();
-        let of = |axis: usize| range(places.iter().map(|place| place[axis]));
-        let ((left, right), (bottom, top)) = (of(0), of(1));
+    pub fn new(skeleton: &Skeleton, projection: &Projection, viewport: Viewport, canvas: &Canvas) -> Option<View> {
+        let [(left, right), (bottom, top)] = skeleton.seen_by(projection)?;
         let size = (right - left).max(top - bottom);
-        if !size.is_finite() || structure.nodes.is_empty() {
+        if !size.is_finite() {
             return None;
         }
         let size = if size > 0.0 { size } else { 1.0 };

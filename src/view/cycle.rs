@@ -77,7 +77,7 @@ pub fn write(out: &mut dyn Write, cycle: &Cycle, unit: Option<&str>, units: &Uni
             Cell::number(turn.dissipated[1]),
             Cell::number(net),
             Cell::from(if net == 0.0 { String::new() } else { pair.to_owned() }),
-            Cell::from(turn.difference.map_or(String::new(), |difference| format!("{difference:.1e}"))),
+            Cell::from(turn.difference.map_or(String::new(), share)),
         ]));
     }
     table.write(out, style)?;
@@ -85,6 +85,11 @@ pub fn write(out: &mut dyn Write, cycle: &Cycle, unit: Option<&str>, units: &Uni
         style.paragraph(out, Role::Muted, &format!("the first and the last {SHOWN} of {count} cycles"))?;
     }
     pairs(out, cycle, units, style)
+}
+
+/// A difference as a share of the largest: 0, or how far from it.
+fn share(difference: f64) -> String {
+    if difference == 0.0 { "0".to_owned() } else { format!("{difference:.1e}") }
 }
 
 /// The pairs that move in the last cycle, or hold a slip from before.

@@ -190,6 +190,26 @@ impl Style {
         format!("{} {}", self.paint(Role::Bad, "error:"), lines.join("\n"))
     }
 
+    /// The same for a reader at a terminal: lines that do not fit are broken between words.
+    pub fn error_in_lines(&self, message: &str) -> String {
+        const LABEL: &str = "error: ";
+        let broken = |(index, line): (usize, &str)| -> Vec<String> {
+            let line = self.text(line);
+            let label = if index == 0 { LABEL } else { "" };
+            if label.len() + line.width() <= self.width {
+                return vec![line];
+            }
+            let indent = " ".repeat(line.len() - line.trim_start().len());
+            let mut lines = self.wrap(&format!("{label}{line}"), self.width.saturating_sub(indent.len()));
+            if let Some(first) = lines.first_mut() {
+                *first = first.strip_prefix(label).unwrap_or(first).to_owned();
+            }
+            lines.into_iter().map(|line| format!("{indent}{line}")).collect()
+        };
+        let lines: Vec<String> = message.lines().enumerate().flat_map(broken).collect();
+        self.error(&lines.join("\n"))
+    }
+
     /// `label` and behind it `text`, broken into lines that hang under the text's first word; under the label where that
     /// takes more than half of the width.
     pub fn hanging(&self, label: &str, text: &str) -> Vec<String> {
@@ -277,5 +297,22 @@ mod tests {
         let label = "pivot 4 (p enters at 0) of 4: ";
         let lines = style.hanging(label, "pair c3 slips +; p falls to 0");
         assert_eq!(lines, ["pivot 4 (p enters at 0) of 4: pair c3", "  slips +; p falls to 0"]);
+    }
+
+    #[test]
+    fn an_error_is_broken_between_words() {
+        let style = Style { width: 30, ..Style::default() };
+        let told = "unknown command `report`: `help` lists all commands\n  here: a line that is too long for them";
+        assert_eq!(
+            style.error_in_lines(told).lines().collect::<Vec<_>>(),
+            [
+                "error: unknown command",
+                "`report`: `help` lists all",
+                "commands",
+                "  here: a line that is too",
+                "  long for them",
+            ]
+        );
+        assert_eq!(style.error_in_lines("short\nlines"), style.error("short\nlines"));
     }
 }

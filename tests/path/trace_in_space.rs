@@ -44,6 +44,8 @@ fn a_slider_on_two_springs_over_a_pull_and_over_friction() {
     let [stop] = &path.breakpoints[..] else { panic!("{:?}", path.breakpoints) };
     near("f", stop.value, 0.25, 1e-11, 0.25);
     assert_eq!(stop.sentence, "pair slider sticks");
+    // what comes to rest has no slip left at the breakpoint, to the last digit
+    assert_eq!((path.places[stop.place].pairs[0].z_t, path.places[stop.place].pairs[0].slip()), (0.0, vec![0.0; 2]));
     for place in &path.places {
         let moved = (5.0 - 20.0 * place.value).max(0.0);
         for (found, share) in place.pairs[0].slip().into_iter().zip([0.6, 0.8]) {

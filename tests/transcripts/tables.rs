@@ -37,6 +37,9 @@ fn rows_are_chosen_sorted_and_cut() {
     let mut plates = embedded("plates-free");
     assert_eq!(rows(&mut plates, "displacements upper[0,0]..upper[2,0]", "node").unwrap().len(), 3);
     assert_eq!(rows(&mut plates, "displacements upper[0,0],lower[1,1]", "node").unwrap(), ["upper[0,0]", "lower[1,1]"]);
+    for command in ["pairs joint[1..3]", "pairs joint[1]..joint[3]"] {
+        assert_eq!(rows(&mut plates, command, "id").unwrap(), ["joint[1]", "joint[2]", "joint[3]"], "{command}");
+    }
     let upper = rows(&mut plates, "displacements upper", "node").unwrap();
     assert!(upper.len() > 9 && upper.iter().all(|node| node.starts_with("upper[")), "{upper:?}");
 }
@@ -47,6 +50,7 @@ fn wrong_rows_are_refused() {
     for (command, part) in [
         ("pairs c9", "no pair `c9`"),
         ("pairs d*", "no pair `d*`"),
+        ("pairs c[1..3]", "no pair `c[1]`"),
         ("pairs sort slip", "no sort key `slip`"),
         ("pairs sort", "`sort` takes one of id, state"),
         ("displacements s1..s9", "no node `s9`"),

@@ -90,7 +90,7 @@ impl<'w> Rows<'w> {
 
     /// Indices of the rows that are named, in the order in which they are; all of them without names.
     ///
-    /// A name is an id, a range `A..B` of them, a pattern with `*`, or what stands before a bracket: `joint` for all
+    /// A name is an id, a range `A..B` or `joint[0..4]` of them, a pattern with `*`, or what stands before a bracket: `joint` for all
     /// `joint[…]`.
     ///
     /// # Errors
@@ -113,8 +113,8 @@ impl<'w> Rows<'w> {
         for word in self.names.iter().flat_map(|word| outside_brackets(word)) {
             if let Some(found) = at.get(word) {
                 chosen.extend(found);
-            } else if let Some((from, to)) = word.split_once("..") {
-                let (from, to) = (find(from)?, find(to)?);
+            } else if let Some((from, to)) = ends_of_range(word) {
+                let (from, to) = (find(&from)?, find(&to)?);
                 let (first, last) = (from[0].min(to[0]), from[from.len() - 1].max(to[to.len() - 1]));
                 if from[0] <= to[0] { chosen.extend(first..=last) } else { chosen.extend((first..=last).rev()) }
             } else {
@@ -141,6 +141,19 @@ impl<'w> Rows<'w> {
     pub(in crate::session) fn cut<T>(&self, rows: &mut Vec<T>) {
         rows.truncate(self.top.unwrap_or(usize::MAX));
     }
+}
+
+/// The ids at both ends of a range: `c1..c3`, or with its numbers in one bracket `joint[0..4]`.
+fn ends_of_range(word: &str) -> Option<(String, String)> {
+    let (from, to) = word.split_once("..")?;
+    let open = from.rfind('[').filter(|open| !from[*open..].contains(']'));
+    Some(match open.zip(to.split_once(']')) {
+        Some((open, (last, behind))) => {
+            let (head, first) = from.split_at(open + 1);
+            (format!("{head}{first}]{behind}"), format!("{head}{last}]{behind}"))
+        }
+        None => (from.to_owned(), to.to_owned()),
+    })
 }
 
 /// The parts of a word between commas that stand outside brackets.

@@ -18,18 +18,24 @@ const NAME: usize = 12;
 /// A shorter slider says nothing.
 const SLIDER: u16 = 6;
 
-/// Width of the names and of the values.
-fn widths(state: &State) -> (usize, usize) {
+/// A name is not cut shorter for the sake of its slider.
+const SHORTEST: usize = 6;
+
+/// Width of the names and of the values in a pane of so many columns: names give way to the sliders.
+fn widths(state: &State, columns: u16) -> (usize, usize) {
     let names = state.shown.scenario.parameters.keys();
     let name = names.clone().map(|name| name.width()).max().unwrap_or(0);
     let value = names.map(|name| short(state.value(name)).width()).max().unwrap_or(0);
-    (name.min(NAME), value.max(6))
+    let value = value.max(6);
+    // mark, blank, ends of the slider
+    let room = usize::from(columns.saturating_sub(SLIDER)).saturating_sub(2 + 1 + value + 2 + 2);
+    (name.min(NAME.min(room.max(SHORTEST))), value)
 }
 
 /// First and last column of the sliders; `None` if there is no room for them.
 pub fn slider(state: &State, area: Rect) -> Option<(u16, u16)> {
     let inside = inside(area);
-    let (name, value) = widths(state);
+    let (name, value) = widths(state, inside.width);
     // mark, name, value, ends of the slider; names and values are short
     let start = inside.x + 2 + name as u16 + 1 + value as u16 + 2;
     let end = inside.right().checked_sub(2)?;
@@ -57,7 +63,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
         return;
     }
     let outer = Rect::new(area.x.saturating_sub(1), area.y.saturating_sub(1), area.width + 2, area.height + 2);
-    let (name_width, value_width) = widths(state);
+    let (name_width, value_width) = widths(state, area.width);
     let rows = usize::from(area.height);
     let first = window(state.parameter, parameters.len(), rows);
     for (row, (index, (name, parameter))) in parameters.iter().enumerate().skip(first).take(rows).enumerate() {

@@ -1,5 +1,7 @@
 //! The structure: undeformed, as it was before the last change, deformed; supports, loads, pairs by state.
 
+use std::sync::Arc;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -20,8 +22,9 @@ use crate::view::plot::canvas::{Canvas, Stroke};
 use crate::view::plot::chart::dotted;
 use crate::view::plot::lines::{Displaced, Move};
 use crate::view::plot::load_arrow::Drawn;
-use crate::view::plot::loads::Loads;
+use crate::view::plot::loads::CaseLoads;
 use crate::view::plot::scene::{supported, towards};
+use crate::view::plot::skeleton::Skeleton;
 use crate::view::plot::structure::{GRID_PITCH, HIDDEN_PITCH, pair_sign, support_sign, support_word};
 use crate::view::projection::Projection;
 use crate::view::style::Role;
@@ -68,7 +71,7 @@ const BETWEEN_ARROWS: f64 = 8.0;
 
 /// Draws the pane.
 pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
-    match state.shown.structure() {
+    match state.shown.structure().zip(state.shown.skeleton()) {
         Some(structure) => draw_structure(state, structure, area, buffer),
         None if state.shown.pairs().is_empty() => {
             let text = "A bare LCP, w = M z + q: there is no structure to draw. Pairs shows z and w, Pivots how \
@@ -79,7 +82,10 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut Buffer) {
+/// A structure and what its pictures share.
+type Known<'a> = (&'a Structure, &'a Arc<Skeleton>);
+
+fn draw_structure(state: &State, structure: Known<'_>, area: Rect, buffer: &mut Buffer) {
     let key = StructureKey {
         moment: The::one(&state.shown.moment),
         motion: The::one(&state.shown.motion),
@@ -110,13 +116,13 @@ fn draw_structure(state: &State, structure: &Structure, area: Rect, buffer: &mut
 }
 
 /// Draws the structure anew.
-fn picture(state: &State, structure: &Structure, area: Rect) -> StructurePicture {
+fn picture(state: &State, (structure, skeleton): Known<'_>, area: Rect) -> StructurePicture {
     let look = state.look;
     let mut buffer = Buffer::empty(Rect::new(0, 0, area.width, area.height));
     let rows = area.height.saturating_sub(1).max(1);
     let canvas = Canvas::new(usize::from(area.width), usize::from(rows));
     let projection = Projection::new(structure.dimension, state.viewpoint());
-    let Some(view) = View::new(structure, &projection, state.view, &canvas) else {
+    let Some(view) = View::new(skeleton, &projection, state.view, &canvas) else {
         return StructurePicture { buffer, pairs: Vec::new() };
     };
     let swing = if state.shown.at_ray() {
@@ -127,9 +133,9 @@ fn picture(state: &State, structure: &Structure, area: Rect) -> StructurePicture
     let factor = scale(state) * swing;
     let motion = &state.shown.motion;
     let moved = Move { u: motion.u.as_deref().unwrap_or_default(), factors: &motion.factors[0], by: factor };
-    let displaced = Displaced::new(structure, moved, &projection);
+    let displaced = Displaced::new((structure, skeleton), moved, &projection);
     let legend = Legend::default();
-    let mut painter = Painter { state, structure, projection: &projection, view, displaced, moved, canvas, legend };
+    let mut painter = Painter { state, structure, skeleton, projection: &projection, view, displaced, moved, canvas, legend };
     painter.draw_lines();
     painter.draw_supports();
     painter.draw_loads();
@@ -153,6 +159,7 @@ fn picture(state: &State, structure: &Structure, area: Rect) -> StructurePicture
 struct Painter<'s> {
     state: &'s State,
     structure: &'s Structure,
+    skeleton: &'s Arc<Skeleton>,
     projection: &'s Projection,
     view: View,
     displaced: Displaced<'s>,
@@ -165,12 +172,6 @@ impl Painter<'_> {
     /// Dot of a node, displaced.
     fn dot(&self, node: usize) -> (f64, f64) {
         self.view.place(self.displaced.at(node))
-    }
-
-    /// The same with its depth.
-    fn seen(&self, node: usize) -> [f64; 3] {
-        let (x, y) = self.dot(node);
-        [x, y, self.displaced.seen(node)[2]]
     }
 
     /// A sign at a dot, if that is in view.
@@ -190,17 +191,17 @@ impl Painter<'_> {
         let motion = &self.state.shown.motion;
         if let Some(before) = motion.before.as_ref().filter(|_| self.state.ghost) {
             let moved = Move { u: before, factors: &motion.factors[1], ..self.moved };
-            let before = Displaced::new(self.structure, moved, self.projection).outline();
+            let before = Displaced::new((self.structure, self.skeleton), moved, self.projection).outline();
             self.draw_faint(Role::Series(1), &before.seen, 2.5);
             self.legend.note(look.sign('┈', ':'), Role::Series(1), "before");
         }
         if self.moved.by != 0.0 && self.moved.u.iter().any(|u| *u != [0.0; 6]) {
-            let built = Displaced::new(self.structure, Move::default(), self.projection).outline();
+            let built = Displaced::new((self.structure, self.skeleton), Move::default(), self.projection).outline();
             self.draw_faint(Role::Muted, &built.seen, 5.0);
             self.legend.note(look.sign('·', '.'), Role::Muted, "undeformed");
         }
         self.draw_faint(Role::Muted, &outline.hidden, HIDDEN_PITCH);
-        let grid = self.displaced.grid();
+        let grid = self.displaced.grid(GRID_PITCH / self.view.pitch);
         if grid.pitch * self.view.pitch >= GRID_PITCH {
             self.draw_faint(Role::Muted, &grid.lines, 2.0);
         }
@@ -231,11 +232,14 @@ impl Painter<'_> {
         // those of the loading shown
         let shown = &state.shown;
         let factor = |case: &LoadCase| case.factor.value(&shown.values) * shown.multiplier(&case.name);
-        let loads = Loads::of(self.structure, &factor, &|node| self.seen(node), self.projection);
-        let arrows = loads.arrows(BETWEEN_ARROWS);
+        let factors: Vec<f64> = self.structure.load_cases.iter().map(factor).collect();
+        let key = (The::one(self.skeleton), The::one(&shown.motion));
+        let loads = state.pictures.loads.of(key, || CaseLoads::of(self.structure, self.moved.u));
+        let loads = loads.seen(&factors, self.moved.by, self.projection);
+        let arrows = loads.arrows(BETWEEN_ARROWS / self.view.pitch);
         let words = loads.legend(&arrows, &state.shown.scenario.units);
         for arrow in &arrows.arrows {
-            let drawn = Drawn::new(arrow, arrow.at, middle, extent);
+            let drawn = Drawn::new(arrow, self.view.place(arrow.at), middle, extent);
             if let Some(drawn) = drawn.cut(|end| self.view.holds(end)) {
                 drawn.draw(&mut self.canvas, look.ascii);
                 let text = words.iter().find(|(kind, _)| *kind == arrow.kind).map_or("load", |(_, text)| text);

@@ -125,6 +125,23 @@ impl Chart {
         format!("{}{}", heading(&self.title, unit.as_deref()), self.about)
     }
 
+    /// The heading in the columns there are: what it is called is cut, and what is said behind it, before its unit is.
+    fn fitted_heading(&self, scale: Option<&Scale>, style: &Style) -> String {
+        let heading = self.heading(scale, style.ascii);
+        let whole = style.text(&heading);
+        let behind = &heading[self.title.len()..];
+        let unit = &behind[..behind.len() - self.about.len()];
+        let with = |end: &str| {
+            let end = style.text(end);
+            let room = style.width.checked_sub(end.width()).filter(|room| 2 * room > style.width)?;
+            Some(style.fit(&style.text(&self.title), room) + &end)
+        };
+        match whole.width() > style.width {
+            true => with(behind).or_else(|| with(unit)).unwrap_or_else(|| style.fit(&whole, style.width)),
+            false => whole,
+        }
+    }
+
     /// The power of ten of the values at the abscissa.
     pub fn abscissa_scale(&self, (first, last): (f64, f64)) -> Scale {
         match &self.values {
@@ -140,8 +157,7 @@ impl Chart {
         let height = |flat: bool| if flat { 3 } else { self.height.clamp(3, 200) };
         let axes = self.axes(|flat| (height(flat) / 3).clamp(2, 8));
         let scale = axes.as_ref().map(|axes| &axes.scale);
-        let title = style.fit(&style.text(&self.heading(scale, style.ascii)), style.width);
-        writeln!(out, "{}", style.paint(Role::Title, &title))?;
+        writeln!(out, "{}", style.paint(Role::Title, &self.fitted_heading(scale, style)))?;
         let Some(axes) = axes else {
             return writeln!(out, "{}", style.fit("nothing to draw", style.width));
         };

@@ -3,18 +3,13 @@
 use std::ops::Range;
 
 use super::depth::{Depths, Line, Seen};
-use super::surface::Surface;
+use super::skeleton::Skeleton;
 use crate::fem::ElasticCurves;
 use crate::model::edge::EdgeSide;
 use crate::model::plate::Plate;
 use crate::model::structure::{Element, Structure};
 use crate::model::vector::{cross, distance, dot, length, unit, way};
 use crate::view::projection::Projection;
-
-/// Straight pieces of a bent frame element where there are many of them, and where there are few.
-const PIECES: [usize; 2] = [8, 32];
-/// So many pieces of all bent elements are enough: the more elements, the fewer pieces of each.
-const ALL_PIECES: usize = 512;
 
 /// Lines of a structure: bars (bent as the element bends), outlines of plates and meshes, single elements, sharp edges
 /// of solids, hulls of rigid bodies and of the parts of a superelement (those along a line as it).
@@ -67,17 +62,20 @@ pub struct Displaced<'a> {
     structure: &'a Structure,
     moved: Move<'a>,
     projection: &'a Projection,
-    surface: Surface,
+    skeleton: &'a Skeleton,
     depths: Option<Depths>,
 }
 
 impl<'a> Displaced<'a> {
-    /// Of this motion, seen so.
-    pub fn new(structure: &'a Structure, moved: Move<'a>, projection: &'a Projection) -> Displaced<'a> {
-        let surface = Surface::of(structure);
-        let mut displaced = Displaced { structure, moved, projection, surface, depths: None };
+    /// Of this motion, seen so; `skeleton` is that of the structure.
+    pub fn new(
+        (structure, skeleton): (&'a Structure, &'a Skeleton),
+        moved: Move<'a>,
+        projection: &'a Projection,
+    ) -> Displaced<'a> {
+        let mut displaced = Displaced { structure, moved, projection, skeleton, depths: None };
         let ring = |face: &Vec<usize>| face.iter().map(|&node| displaced.seen(node)).collect();
-        displaced.depths = Depths::of(&displaced.surface.faces.iter().map(ring).collect::<Vec<_>>());
+        displaced.depths = Depths::of(&skeleton.surface.faces.iter().map(ring).collect::<Vec<_>>());
         displaced
     }
 
@@ -121,12 +119,12 @@ impl<'a> Displaced<'a> {
     fn all_lines(&self) -> Vec<Vec<Seen>> {
         let structure = self.structure;
         let Move { u, factors, by } = self.moved;
-        let curves = ElasticCurves::of(structure, factors);
-        let shares = shares(structure);
+        let curves = self.skeleton.bends().then(|| ElasticCurves::of(structure, factors)).filter(|_| by != 0.0);
+        let shares = self.skeleton.shares();
         let mut lines = Vec::new();
         let mut single = |elements: Range<usize>| {
             for (index, element) in elements.clone().zip(&structure.elements[elements]) {
-                let curve = if by == 0.0 { None } else { curves.places(index, u, &shares) };
+                let curve = curves.as_ref().and_then(|curves| curves.places(index, u, &shares));
                 if element.shape().is_solid() {
                     // its edges are those of the surface
                 } else if let Some(curve) = curve {
@@ -163,7 +161,7 @@ impl<'a> Displaced<'a> {
                 None => hull(self.ring(part.nodes.iter().copied())),
             });
         }
-        let sharp = self.surface.edges.iter().filter(|edge| edge.is_sharp);
+        let sharp = self.skeleton.surface.edges.iter().filter(|edge| edge.is_sharp);
         lines.extend(sharp.map(|edge| self.ring(edge.nodes.iter().copied())));
         lines
     }
@@ -176,8 +174,11 @@ impl<'a> Displaced<'a> {
         shares.iter().zip(curve).map(|at| self.projection.seen(place(at))).collect()
     }
 
-    /// See [`Grid`].
-    pub fn grid(&self) -> Grid {
+    /// See [`Grid`]; its lines are left out where they are nearer than `least`.
+    pub fn grid(&self, least: f64) -> Grid {
+        if self.depths.is_none() && self.skeleton.pitch < least {
+            return Grid { lines: Vec::new(), pitch: self.skeleton.pitch };
+        }
         let sides = self.structure.meshes.iter().flat_map(|mesh| &mesh.sides);
         let sides = sides.filter(|(_, is_inside)| *is_inside);
         let mut lines: Vec<Line> = sides.map(|(side, _)| flat(&self.ring(along(side)))).collect();
@@ -188,9 +189,9 @@ impl<'a> Displaced<'a> {
             lines.extend((1..rows.saturating_sub(1)).map(|j| flat(&row(j))));
             lines.extend((1..columns.saturating_sub(1)).map(|i| flat(&column(i))));
         }
-        let mut pitch = plate_pitch(self.structure);
+        let mut pitch = self.skeleton.pitch;
         if let Some(depths) = &self.depths {
-            let inner = self.surface.edges.iter().filter(|edge| !edge.is_sharp);
+            let inner = self.skeleton.surface.edges.iter().filter(|edge| !edge.is_sharp);
             let [seen, _] = inner.fold([Vec::new(), Vec::new()], |[mut seen, hidden], edge| {
                 seen.extend(depths.split(&self.ring(edge.nodes.iter().copied()))[0].iter().cloned());
                 [seen, hidden]
@@ -218,7 +219,7 @@ impl<'a> Displaced<'a> {
             faces.push(ring);
         }
         let mut lit: Vec<(f64, Face)> = Vec::new();
-        for face in &self.surface.faces {
+        for face in &self.skeleton.surface.faces {
             let ring = self.ring(face.iter().copied());
             let normal = normal(&ring);
             if normal[2] > EDGE_ON {
@@ -237,22 +238,15 @@ impl<'a> Displaced<'a> {
     }
 }
 
-/// The largest displacement of nodes and of places between them.
-pub fn largest_displacement(structure: &Structure, factors: &[f64], u: &[[f64; 6]]) -> f64 {
-    let curves = ElasticCurves::of(structure, factors);
-    let shares = shares(structure);
+/// The largest displacement of nodes and of places between them; `skeleton` is that of the structure.
+pub fn largest_displacement(structure: &Structure, skeleton: &Skeleton, factors: &[f64], u: &[[f64; 6]]) -> f64 {
+    let curves = skeleton.bends().then(|| ElasticCurves::of(structure, factors));
+    let shares = skeleton.shares();
     let bars = structure.elements.iter().enumerate().filter(|(_, element)| element.bends());
-    let between = bars.filter_map(|(index, _)| curves.places(index, u, &shares)).flatten();
+    let between = curves.iter().flat_map(|curves| bars.clone().filter_map(|(index, _)| curves.places(index, u, &shares)));
+    let between = between.flatten();
     let nodes = u.iter().map(|&[x, y, z, ..]| length([x, y, z]));
     nodes.chain(between.map(length)).fold(0.0, f64::max)
-}
-
-/// Where the elastic curve of a bar is drawn through, as shares of its length.
-fn shares(structure: &Structure) -> Vec<f64> {
-    let [many, few] = PIECES;
-    let bending = structure.elements.iter().filter(|element| element.bends()).count();
-    let pieces = (ALL_PIECES / bending.max(1)).clamp(many, few);
-    (0..=pieces).map(|i| i as f64 / pieces as f64).collect()
 }
 
 /// Faces that turn to the viewer by less than this are seen from their side.
@@ -289,20 +283,6 @@ fn along(side: &EdgeSide) -> impl Iterator<Item = usize> + use<> {
 /// How many rows of nodes a plate has, and how many columns.
 fn plate_lines(plate: &Plate) -> (usize, usize) {
     (plate.nodes.len(), plate.nodes.iter().map(Vec::len).min().unwrap_or(0))
-}
-
-/// Smallest distance of two grid lines of a plate.
-fn plate_pitch(structure: &Structure) -> f64 {
-    let place = |node: &usize| structure.nodes.get(*node).map(|node| node.position);
-    // a plate is a rectangle: its first row and column have all distances
-    let lines = structure.plates.iter().flat_map(|plate| {
-        let row: Vec<_> = plate.nodes.iter().take(1).flatten().filter_map(place).collect();
-        let column: Vec<_> = plate.nodes.iter().filter_map(|row| row.first()).filter_map(place).collect();
-        [row, column]
-    });
-    let smallest =
-        |line: Vec<[f64; 3]>| line.windows(2).map(|two| distance(two[0], two[1])).fold(f64::INFINITY, f64::min);
-    lines.map(smallest).fold(f64::INFINITY, f64::min)
 }
 
 /// The order of nodes along the line on which they all lie; `None` if they do not.
@@ -381,7 +361,9 @@ mod tests {
     fn a_cube_shows_three_sides_and_hides_three_edges() {
         let cube = block([2, 2, 2], [1.0; 3]);
         let projection = view("ISO");
-        let displaced = Displaced::new(&cube, Move::default(), &projection);
+        let skeleton = Skeleton::of(&cube);
+        let of_cube = (&cube, &skeleton);
+        let displaced = Displaced::new(of_cube, Move::default(), &projection);
         // four faces of elements on each side
         let faces = displaced.faces();
         assert_eq!(faces.len(), 3 * 4);
@@ -394,12 +376,12 @@ mod tests {
         assert!((length(&outline.seen) - 9.0 * edge).abs() < 0.1, "{}", length(&outline.seen));
         assert!((length(&outline.hidden) - 3.0 * edge).abs() < 0.1, "{}", length(&outline.hidden));
         // two lines of one half of an edge on each of the three sides seen, both ways
-        let grid = displaced.grid();
+        let grid = displaced.grid(0.0);
         assert!((length(&grid.lines) - 3.0 * 2.0 * edge).abs() < 0.1, "{}", length(&grid.lines));
         assert!((grid.pitch - 0.5 * edge).abs() < 1e-9);
         for name in ["XY", "XZ", "YZ"] {
             let projection = view(name);
-            assert_eq!(Displaced::new(&cube, Move::default(), &projection).faces().len(), 4, "{name}");
+            assert_eq!(Displaced::new(of_cube, Move::default(), &projection).faces().len(), 4, "{name}");
         }
         // the nodes below are hidden but for those on the edges seen
         let hidden = (0..cube.nodes.len()).filter(|&node| displaced.hides(node));
@@ -428,7 +410,8 @@ mod tests {
         wall.elements.push(Element { nodes, material: 0, kind });
         // seen from −y the wall, 4 high, stands before the column of 6
         let projection = view("XZ");
-        let outline = Displaced::new(&wall, Move::default(), &projection).outline();
+        let skeleton = Skeleton::of(&wall);
+        let outline = Displaced::new((&wall, &skeleton), Move::default(), &projection).outline();
         let upright = |lines: &[Line]| {
             let middle = lines.iter().filter(|line| line.iter().all(|(x, _)| (x - 2.0).abs() < 1e-9));
             middle.filter_map(extent).sum::<f64>()
@@ -437,7 +420,7 @@ mod tests {
         assert!((upright(&outline.hidden) - 4.0).abs() < 0.05);
         // from the other side it stands before the wall
         let projection = Projection::new(Dimension::Space, Viewpoint::new(90.0, 0.0).unwrap());
-        let outline = Displaced::new(&wall, Move::default(), &projection).outline();
+        let outline = Displaced::new((&wall, &skeleton), Move::default(), &projection).outline();
         assert!(outline.hidden.iter().all(|line| line.iter().any(|(x, _)| (x + 2.0).abs() > 1e-9)));
     }
 }

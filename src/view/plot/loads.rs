@@ -1,7 +1,7 @@
 //! Arrows of loads in a picture: each kind scaled by its largest, those close together thinned.
 
 use std::cell::OnceCell;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use super::depth::Seen;
 use crate::model::groups::Groups;
@@ -106,70 +106,121 @@ impl Arrow {
     }
 }
 
-impl Loads {
-    /// The loads of a structure under these factors of its cases, where its nodes stand at `at` in the picture.
-    pub fn of(
-        structure: &Structure,
-        factor: &dyn Fn(&LoadCase) -> f64,
-        at: &dyn Fn(usize) -> Seen,
-        projection: &Projection,
-    ) -> Loads {
-        let names = structure.load_cases.iter().map(|case| case.name.clone()).collect();
-        let mut loads = Loads { names, projection: *projection, ..Loads::default() };
-        let mut points: Vec<Point> = Vec::new();
-        let mut lines: HashMap<(usize, [u64; 2]), usize> = HashMap::new();
-        let mut weights: HashMap<(usize, usize), Weight> = HashMap::new();
-        let owner = OnceCell::new();
-        let on_bar = |element: usize, distance: f64| {
-            let [a, b] = [0, 1].map(|end| structure.elements[element].nodes[end]);
-            let share = distance / length(structure, element);
-            let (a, b) = (at(a), at(b));
-            std::array::from_fn(|c| a[c] + share * (b[c] - a[c]))
+/// A place in the model, and how it is displaced there.
+type Place = [[f64; 3]; 2];
+
+/// The loads of each case as they are under a factor of 1, where a structure has them: what takes a walk over all of them is
+/// done once, however they are multiplied, displaced and seen.
+#[derive(Clone, Debug, Default)]
+pub struct CaseLoads {
+    cases: Vec<CaseParts>,
+}
+
+/// The loads of a case.
+#[derive(Clone, Debug, Default)]
+struct CaseParts {
+    name: String,
+    points: Vec<(Place, [f64; 3])>,
+    /// Element, range on it: both ends and the values there.
+    lines: Vec<((usize, [u64; 2]), [Place; 2], [[f64; 3]; 2])>,
+    /// Owner, and what it weighs.
+    weights: Vec<((usize, usize), Weight<2>)>,
+}
+
+impl CaseLoads {
+    /// Those of a structure whose nodes are displaced by u.
+    pub fn of(structure: &Structure, u: &[[f64; 6]]) -> CaseLoads {
+        let at = |node: usize| -> Place {
+            let moved = u.get(node).copied().unwrap_or_default();
+            [structure.nodes[node].position, [moved[0], moved[1], moved[2]]]
         };
-        for (number, case) in structure.load_cases.iter().enumerate() {
-            let (factor, cases) = (factor(case), 1 << number.min(127));
-            for load in case.loads.iter().filter(|_| factor != 0.0) {
+        let on_bar = |element: usize, distance: f64| -> Place {
+            let [a, b] = [0, 1].map(|end| at(structure.elements[element].nodes[end]));
+            let share = distance / length(structure, element);
+            std::array::from_fn(|k| std::array::from_fn(|c| a[k][c] + share * (b[k][c] - a[k][c])))
+        };
+        let owner = OnceCell::new();
+        let parts = |case: &LoadCase| {
+            let mut parts = CaseParts { name: case.name.clone(), ..CaseParts::default() };
+            let mut lines: HashMap<(usize, [u64; 2]), usize> = HashMap::new();
+            let mut weights: BTreeMap<(usize, usize), Weight<2>> = BTreeMap::new();
+            for load in &case.loads {
                 match *load {
-                    Load::Nodal { node, force, .. } => {
-                        points.push((LoadKind::Force, at(node), force.map(|f| factor * f), cases));
-                    }
+                    Load::Nodal { node, force, .. } => parts.points.push((at(node), force)),
                     Load::Element { element, load: ElementLoad::Point { distance, force, .. } } => {
-                        points.push((LoadKind::Force, on_bar(element, distance), force.map(|f| factor * f), cases));
+                        parts.points.push((on_bar(element, distance), force));
                     }
                     Load::Element { element, load: ElementLoad::Line { range, value } } => {
-                        let index = *lines.entry((element, range.map(f64::to_bits))).or_insert_with(|| {
-                            loads.lines.push((range.map(|distance| on_bar(element, distance)), [[0.0; 3]; 2], 0));
-                            loads.lines.len() - 1
+                        let key = (element, range.map(f64::to_bits));
+                        let index = *lines.entry(key).or_insert_with(|| {
+                            parts.lines.push((key, range.map(|distance| on_bar(element, distance)), [[0.0; 3]; 2]));
+                            parts.lines.len() - 1
                         });
-                        let (_, sums, of) = &mut loads.lines[index];
-                        *of |= cases;
-                        for (sum, value) in sums.iter_mut().zip(value) {
-                            *sum = std::array::from_fn(|c| sum[c] + factor * value[c]);
-                        }
+                        add(&mut parts.lines[index].2, 1.0, &value);
                     }
                     Load::Element { element, load: ElementLoad::Body(value) } => {
                         let volume = volume(structure, element);
                         let nodes = &structure.elements[element].nodes;
-                        let places: Vec<Seen> = nodes.iter().map(|&node| at(node)).collect();
                         let count = nodes.len().max(1) as f64;
-                        let middle = std::array::from_fn(|c| places.iter().map(|place| place[c]).sum::<f64>() / count);
+                        let mut middle = [[0.0; 3]; 2];
+                        nodes.iter().for_each(|&node| add(&mut middle, 1.0 / count, &at(node)));
                         let owner = owner.get_or_init(|| owners(structure));
-                        let weight = weights.entry(owner[element]).or_default();
-                        weight.add(middle, value.map(|b| factor * b * volume), cases);
+                        weights.entry(owner[element]).or_default().add(middle, value.map(|b| b * volume));
                     }
                     // They have no direction, or are not forces.
                     Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
                 }
             }
+            parts.weights = weights.into_iter().collect();
+            parts
+        };
+        CaseLoads { cases: structure.load_cases.iter().map(parts).collect() }
+    }
+
+    /// Those in a picture: each case times its factor, displacements times `by`.
+    pub fn seen(&self, factors: &[f64], by: f64, projection: &Projection) -> Loads {
+        let place = |[at, u]: &Place| -> [f64; 3] { std::array::from_fn(|c| at[c] + by * u[c]) };
+        let seen = |at: &Place| projection.seen(place(at));
+        let names = self.cases.iter().map(|case| case.name.clone()).collect();
+        let mut loads = Loads { names, projection: *projection, ..Loads::default() };
+        let mut points: Vec<Point> = Vec::new();
+        let mut lines: HashMap<(usize, [u64; 2]), usize> = HashMap::new();
+        let mut weights: BTreeMap<(usize, usize), (Weight<2>, Cases)> = BTreeMap::new();
+        let acting = self.cases.iter().zip(factors).enumerate().filter(|(_, (_, factor))| **factor != 0.0);
+        for (number, (case, &factor)) in acting {
+            let cases = 1 << number.min(127);
+            let times = |force: &[f64; 3]| force.map(|f| factor * f);
+            points.extend(case.points.iter().map(|(at, force)| (LoadKind::Force, seen(at), times(force), cases)));
+            for (key, ends, value) in &case.lines {
+                let index = *lines.entry(*key).or_insert_with(|| {
+                    loads.lines.push((ends.each_ref().map(seen), [[0.0; 3]; 2], 0));
+                    loads.lines.len() - 1
+                });
+                let (_, sums, of) = &mut loads.lines[index];
+                *of |= cases;
+                add(sums, factor, value);
+            }
+            for (owner, weight) in &case.weights {
+                let (sum, of) = weights.entry(*owner).or_default();
+                *of |= cases;
+                sum.join(factor, weight);
+            }
         }
-        let mut weights: Vec<_> = weights.into_iter().collect();
-        weights.sort_by_key(|(owner, _)| *owner);
-        let weights = weights.into_iter().map(|(_, weight)| weight);
-        points.extend(weights.map(|weight| (LoadKind::Weight, weight.centre(), weight.force, weight.cases)));
+        let weights = weights.into_values();
+        points.extend(weights.map(|(sum, cases)| (LoadKind::Weight, seen(&sum.centre()), sum.force, cases)));
         loads.points = together(points, 0.0).0;
         loads
     }
+}
 
+/// Adds a multiple of two vectors to two others.
+fn add(sums: &mut [[f64; 3]; 2], factor: f64, values: &[[f64; 3]; 2]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum = std::array::from_fn(|c| sum[c] + factor * value[c]);
+    }
+}
+
+impl Loads {
     /// Arrows at least `apart` from one another: point forces nearer than that are added up, line loads have an arrow
     /// every `apart`. What cancels out has none.
     pub fn arrows(&self, apart: f64) -> Arrows {
@@ -243,26 +294,38 @@ impl Loads {
     }
 }
 
-/// The weight of several elements.
-#[derive(Clone, Debug, Default)]
-struct Weight {
+/// The weight of several elements, or the sum of several forces; each place is K vectors.
+#[derive(Clone, Debug)]
+struct Weight<const K: usize> {
     force: [f64; 3],
     /// Σ |force|, and Σ |force|·place.
-    sums: [f64; 4],
-    cases: Cases,
+    size: f64,
+    moments: [[f64; 3]; K],
 }
 
-impl Weight {
-    fn add(&mut self, [x, y, z]: Seen, force: [f64; 3], cases: Cases) {
+impl<const K: usize> Default for Weight<K> {
+    fn default() -> Self {
+        Weight { force: [0.0; 3], size: 0.0, moments: [[0.0; 3]; K] }
+    }
+}
+
+impl<const K: usize> Weight<K> {
+    fn add(&mut self, place: [[f64; 3]; K], force: [f64; 3]) {
         let own = size(force);
-        self.cases |= cases;
-        self.force = std::array::from_fn(|c| self.force[c] + force[c]);
-        let add = [own, own * x, own * y, own * z];
-        self.sums = std::array::from_fn(|k| self.sums[k] + add[k]);
+        self.join(1.0, &Weight { force, size: own, moments: place.map(|at| at.map(|x| own * x)) });
     }
 
-    fn centre(&self) -> Seen {
-        [1, 2, 3].map(|k| self.sums[k] / self.sums[0])
+    /// Adds another one times a factor.
+    fn join(&mut self, factor: f64, other: &Weight<K>) {
+        self.force = std::array::from_fn(|c| self.force[c] + factor * other.force[c]);
+        self.size += factor.abs() * other.size;
+        for (sum, moment) in self.moments.iter_mut().zip(&other.moments) {
+            *sum = std::array::from_fn(|c| sum[c] + factor.abs() * moment[c]);
+        }
+    }
+
+    fn centre(&self) -> [[f64; 3]; K] {
+        self.moments.map(|moment| moment.map(|sum| sum / self.size))
     }
 }
 
@@ -305,7 +368,7 @@ fn volume(structure: &Structure, index: usize) -> f64 {
 /// Point loads of one kind nearer than `apart` (or at one place) added up, at the centre of their sizes; whether any were
 /// at different places.
 fn together(points: Vec<Point>, apart: f64) -> (Vec<Point>, bool) {
-    let mut groups: Vec<(LoadKind, Seen, Weight)> = Vec::new();
+    let mut groups: Vec<(LoadKind, Seen, Weight<1>, Cases)> = Vec::new();
     let mut cells: HashMap<(bool, i64, i64), Vec<usize>> = HashMap::new();
     let cell = |[x, y, _]: Seen| match apart > 0.0 {
         true => ((x / apart).floor() as i64, (y / apart).floor() as i64),
@@ -322,20 +385,26 @@ fn together(points: Vec<Point>, apart: f64) -> (Vec<Point>, bool) {
             .flatten()
             .copied()
             .filter(|&group| {
-                let (_, [x, y, z], _) = groups[group];
+                let (_, [x, y, z], ..) = groups[group];
                 (x - at[0]).hypot(y - at[1]) <= 0.8 * apart && (apart > 0.0 || z == at[2])
             })
             .min();
         let group = near.unwrap_or_else(|| {
-            groups.push((kind, at, Weight::default()));
+            groups.push((kind, at, Weight::default(), 0));
             cells.entry((is_weight, i, j)).or_default().push(groups.len() - 1);
             groups.len() - 1
         });
         is_added |= groups[group].1 != at;
-        groups[group].2.add(at, force, cases);
+        let (.., sum, of) = &mut groups[group];
+        *of |= cases;
+        sum.add([at], force);
     }
-    let all = groups.into_iter().filter(|(.., weight)| weight.sums[0] > 0.0);
-    (all.map(|(kind, _, weight)| (kind, weight.centre(), weight.force, weight.cases)).collect(), is_added)
+    let all = groups.into_iter().filter(|(.., sum, _)| sum.size > 0.0);
+    let point = |(kind, _, sum, cases): (LoadKind, Seen, Weight<1>, Cases)| {
+        let [centre] = sum.centre();
+        (kind, centre, sum.force, cases)
+    };
+    (all.map(point).collect(), is_added)
 }
 
 #[cfg(test)]

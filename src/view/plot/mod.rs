@@ -12,6 +12,7 @@ pub mod load_arrow;
 pub mod loads;
 pub mod path;
 pub mod scene;
+pub mod skeleton;
 pub mod structure;
 pub mod surface;
 pub mod ticks;

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 
 use super::bar_line::BarLine;
 use super::lines::{Displaced, Face, Grid, Move, Outline, largest_displacement};
-use super::loads::Loads;
+use super::loads::{CaseLoads, Loads};
+use super::skeleton::Skeleton;
 use super::ticks::range;
 use super::{Series, diagram};
 use crate::answer::diagram::Internal;
@@ -65,18 +66,19 @@ pub fn nodal(structure: &Structure, displacements: &[NodeDisplacement]) -> Vec<[
 
 /// The factor by which displacements are drawn: the one asked for, or 1, 2 or 5 × 10^k so that the largest, between the
 /// nodes too, becomes at most a tenth of the model's larger side; 1 where nothing moves. `factors`: see [`Picture`].
-pub fn factor(structure: &Structure, factors: &[f64], u: &[[f64; 6]], magnification: Magnification) -> f64 {
+pub fn factor(
+    (structure, skeleton): (&Structure, &Skeleton),
+    factors: &[f64],
+    u: &[[f64; 6]],
+    magnification: Magnification,
+) -> f64 {
     if let Magnification::Factor(factor) = magnification {
         return if factor.is_finite() { factor } else { 1.0 };
     }
-    let side = |axis: usize| {
-        let (low, high) = range(structure.nodes.iter().map(|node| node.position[axis]));
-        (high - low).max(0.0)
-    };
-    let size = side(0).max(side(1)).max(side(2));
+    let size = [0, 1, 2].map(|axis| skeleton.side(axis)).into_iter().fold(0.0, f64::max);
     // a single point is seen in a picture of size 1
     let size = if size > 0.0 { size } else { 1.0 };
-    let rough = 0.1 * size / largest_displacement(structure, factors, u);
+    let rough = 0.1 * size / largest_displacement(structure, skeleton, factors, u);
     if !(rough.is_finite() && rough > 0.0) {
         return 1.0;
     }
@@ -98,7 +100,7 @@ pub struct Lines {
 
 impl Lines {
     fn of(displaced: &Displaced) -> Lines {
-        Lines { outline: displaced.outline(), grid: displaced.grid(), faces: displaced.faces() }
+        Lines { outline: displaced.outline(), grid: displaced.grid(0.0), faces: displaced.faces() }
     }
 }
 
@@ -169,7 +171,8 @@ impl Scene {
         let u = picture.displacements.map(|displacements| nodal(structure, displacements));
         let factors = if u.is_some() { picture.factors } else { &[] };
         let moved = u.as_deref().unwrap_or_default();
-        let factor = factor(structure, factors, moved, picture.magnification);
+        let skeleton = Skeleton::of(structure);
+        let factor = factor((structure, &skeleton), factors, moved, picture.magnification);
         let mut title = picture.title.to_owned();
         if u.is_some() {
             title.push_str(&format!(" · displacements × {}", short(factor)));
@@ -177,8 +180,8 @@ impl Scene {
         if structure.dimension == Dimension::Space {
             title.push_str(&format!(" · {} · {}", picture.viewpoint.words(), projection.axes_in_words()));
         }
-        let at_rest = Displaced::new(structure, Move::default(), &projection);
-        let displaced = Displaced::new(structure, Move { u: moved, factors, by: factor }, &projection);
+        let at_rest = Displaced::new((structure, &skeleton), Move::default(), &projection);
+        let displaced = Displaced::new((structure, &skeleton), Move { u: moved, factors, by: factor }, &projection);
         let (before, now) = (Lines::of(&at_rest), Lines::of(&displaced));
         let all = || {
             let outlines = [&before.outline, &now.outline].into_iter().flat_map(Outline::all).flatten().copied();
@@ -207,7 +210,8 @@ impl Scene {
             supports: supported(structure).into_iter().map(|(node, held)| (at(node), held)).collect(),
             pairs: structure.pairs.iter().enumerate().map(mark).collect(),
             loads: loads.map_or_else(Loads::default, |parameters| {
-                Loads::of(structure, &|case| case.factor.value(parameters), &|node| displaced.seen(node), &projection)
+                let factors: Vec<f64> = structure.load_cases.iter().map(|case| case.factor.value(parameters)).collect();
+                CaseLoads::of(structure, moved).seen(&factors, factor, &projection)
             }),
             diagrams: Vec::new(),
             before,

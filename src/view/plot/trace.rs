@@ -40,7 +40,7 @@ pub fn drawing(pivots: &[PivotRecord], current: Option<usize>, units: &Units) ->
         && let Some(&point) = series.points.iter().find(|(x, _)| *x == current as f64)
     {
         curves.push(Curve {
-            series: Series { label: format!("step {current}"), points: vec![point] },
+            series: Series { label: format!("pivot {current}"), points: vec![point] },
             number: 1,
             line: Line::Marked,
         });
