@@ -14,7 +14,7 @@ use super::pane::{Plot, SortKey};
 use super::shown::{Moment, Motion};
 use super::theme::Look;
 use super::viewport::Viewport;
-use crate::view::plot::loads::CaseLoads;
+use crate::view::plot::case_loads::CaseLoads;
 use crate::view::plot::skeleton::Skeleton;
 use crate::view::projection::Viewpoint;
 

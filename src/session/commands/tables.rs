@@ -19,9 +19,7 @@ use crate::view::style::{Role, Style};
 
 /// Show state, forces and slip of the contact pairs, at the pivot chosen by `step`
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example:\n  pairs\n  pairs c1 c3\n  pairs joint[0..4] sort z_t\n  pairs c* sort reserve top 3"
-)]
+#[command(after_help = "Example:\n  pairs\n  pairs c1 c3\n  pairs joint[0..4] sort z_t\n  pairs c* sort reserve top 3")]
 pub struct Pairs {
     /// Pairs, ranges A..B and c[A..B] or patterns with `*`; then `sort KEY` and `top N`
     #[arg(value_name = "PAIRS")]

@@ -19,10 +19,10 @@ use crate::tui::pictures::{StructureKey, StructurePicture};
 use crate::tui::viewport::View;
 use crate::view::pivots::title;
 use crate::view::plot::canvas::{Canvas, Stroke};
+use crate::view::plot::case_loads::CaseLoads;
 use crate::view::plot::chart::dotted;
 use crate::view::plot::lines::{Displaced, Move};
 use crate::view::plot::load_arrow::Drawn;
-use crate::view::plot::loads::CaseLoads;
 use crate::view::plot::scene::{supported, towards};
 use crate::view::plot::skeleton::Skeleton;
 use crate::view::plot::structure::{GRID_PITCH, HIDDEN_PITCH, pair_sign, support_sign, support_word};
@@ -135,7 +135,8 @@ fn picture(state: &State, (structure, skeleton): Known<'_>, area: Rect) -> Struc
     let moved = Move { u: motion.u.as_deref().unwrap_or_default(), factors: &motion.factors[0], by: factor };
     let displaced = Displaced::new((structure, skeleton), moved, &projection);
     let legend = Legend::default();
-    let mut painter = Painter { state, structure, skeleton, projection: &projection, view, displaced, moved, canvas, legend };
+    let mut painter =
+        Painter { state, structure, skeleton, projection: &projection, view, displaced, moved, canvas, legend };
     painter.draw_lines();
     painter.draw_supports();
     painter.draw_loads();

@@ -84,3 +84,20 @@ fn a_load_answers_in_the_last_line() {
     rig.press(&["esc", "+"]);
     assert_eq!(rig.state.shown.scenario.name, "greco");
 }
+
+/// Whatever the word is cut to: what a scenario says of itself stands at the bottom, and the next key means the panes.
+#[test]
+fn a_scenario_that_is_loaded_says_so_in_a_line() {
+    for line in ["load dam", "lo dam", "load dam; load portal"] {
+        let mut rig = Rig::new("beam", 80, 24);
+        rig.command(line);
+        assert_eq!(rig.state.overlay, Overlay::None, "{line}");
+        let said = rig.state.message.as_ref().unwrap().text.clone();
+        assert!(said.starts_with("dam: Gravity dam") && said.contains("shows all"), "{line}: {said}");
+        rig.press(&["3"]);
+        assert_eq!(rig.state.focus, Pane::Pairs, "{line}");
+    }
+    let mut rig = Rig::new("beam", 80, 24);
+    rig.command("load dam; pairs");
+    assert!(matches!(&rig.state.overlay, Overlay::Output { .. }), "a table was asked for");
+}

@@ -164,3 +164,22 @@ fn the_next_pivot_does_not_wait_for_the_picture_of_the_last() {
     update(&mut rig.state, Action::Done(Box::new(done)));
     assert!(!rig.state.shown.is_behind() && rig.state.shown.motion.u.is_some());
 }
+
+/// However often its picture is drawn, a structure is gone over once; one whose places change is another.
+#[test]
+fn what_pictures_share_is_gathered_once() {
+    let mut rig = plates();
+    let shared = |rig: &Rig| Arc::clone(rig.state.shown.skeleton().unwrap());
+    let first = shared(&rig);
+    rig.screen();
+    slide(&mut rig);
+    rig.press(&["1", "i", "d", "down", "L", "4", "left"]);
+    rig.command("set T 70");
+    rig.screen();
+    assert!(Arc::ptr_eq(&first, &shared(&rig)));
+    let mut rig = Rig::new("dam", 140, 45);
+    let (before, width) = (shared(&rig), shared(&rig).side(0));
+    rig.command("set B 27");
+    assert!(!Arc::ptr_eq(&before, &shared(&rig)));
+    assert_eq!([width, shared(&rig).side(0)], [24.0, 27.0]);
+}

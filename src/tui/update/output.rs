@@ -5,6 +5,8 @@ use std::rc::Rc;
 use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr;
 
+use crate::session::language::grammar;
+use crate::session::language::turn::Turn;
 use crate::view::style::Role;
 
 use crate::tui::action::{Do, Job};
@@ -47,10 +49,12 @@ fn say_loaded(state: &mut State, title: &str, lines: Vec<Line<'static>>, role: R
     state.say(role, text);
 }
 
-/// Whether a line loads a scenario.
+/// Whether all that a line does is to load a scenario.
 fn loads(line: &str) -> bool {
-    let word = line.split_whitespace().next().unwrap_or_default();
-    matches!(word, "load" | "reload")
+    Turn::of_line(line).iter().all(|turn| match grammar::parse(turn.command) {
+        Ok(Some(parsed)) => parsed.action.loads() || parsed.command.name == "reload",
+        _ => false,
+    })
 }
 
 /// What a command printed: one line at the bottom, several over the panes.

@@ -103,8 +103,9 @@ impl Canvas {
         let mut dots: Vec<(u8, Role)> = vec![(0, Role::Plain); self.columns * self.rows];
         let above = self.inks.iter().filter(|ink| !ink.under);
         for ink in above.chain(self.inks.iter().filter(|ink| ink.under)) {
-            for (cell, bits) in dots.iter_mut().zip(self.raster(&ink.strokes)) {
-                if bits != 0 && !(ink.under && cell.0 != 0) {
+            for (index, bits) in self.raster(&ink.strokes) {
+                let cell = &mut dots[index];
+                if !(ink.under && cell.0 != 0) {
                     *cell = (cell.0 | bits, ink.role);
                 }
             }
@@ -163,28 +164,37 @@ impl Canvas {
         false
     }
 
-    /// Braille dots of `strokes`, one byte per character, as textplots draws them.
-    fn raster(&self, strokes: &[Stroke]) -> Vec<u8> {
-        let mut cells = vec![0; self.columns * self.rows];
-        let width = (2 * self.columns).max(MINIMUM_DOTS) as u32;
-        let height = (4 * self.rows) as u32;
-        // textplots counts y from below and leaves the dot row 0 to the line under the chart: hence the 1.
-        let place = |&(x, y): &(f64, f64)| {
-            let x = x.round().clamp(0.0, self.dots_x());
-            let y = y.round().clamp(0.0, self.dots_y());
-            (x as f32, y as f32 + 1.0)
+    /// Braille dots of `strokes` as textplots draws them: characters and their bytes. Only the part of the canvas that they
+    /// reach into is drawn: an arrow costs what an arrow takes.
+    fn raster(&self, strokes: &[Stroke]) -> Vec<(usize, u8)> {
+        let place = |&(x, y): &(f64, f64)| (x.round().clamp(0.0, self.dots_x()), y.round().clamp(0.0, self.dots_y()));
+        let placed = |points: &[(f64, f64)]| -> Vec<(f64, f64)> {
+            points.iter().filter(|(x, y)| x.is_finite() && y.is_finite()).map(place).collect()
         };
-        let points: Vec<(bool, Vec<(f32, f32)>)> = strokes
+        let placed: Vec<(bool, Vec<(f64, f64)>)> = strokes
             .iter()
-            .map(|stroke| {
-                let (joined, points) = match stroke {
-                    Stroke::Line(points) => (true, points),
-                    Stroke::Dots(points) => (false, points),
-                };
-                let finite = points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
-                let points: Vec<(f32, f32)> = finite.map(place).collect();
-                (joined && points.len() > 1, points)
+            .map(|stroke| match stroke {
+                Stroke::Line(points) => (true, placed(points)),
+                Stroke::Dots(points) => (false, placed(points)),
             })
+            .collect();
+        let all = || placed.iter().flat_map(|(_, points)| points);
+        if all().next().is_none() {
+            return Vec::new();
+        }
+        // characters that the dots lie in: from the left, from below
+        let reach = |axis: fn(&(f64, f64)) -> f64, dots: f64| {
+            let characters = || all().map(|point| (axis(point) / dots) as usize);
+            (characters().min().unwrap_or(0), characters().max().unwrap_or(0))
+        };
+        let ((left, right), (low, high)) = (reach(|point| point.0, 2.0), reach(|point| point.1, 4.0));
+        let width = (2 * (right - left + 1)).max(MINIMUM_DOTS) as u32;
+        let height = 4 * (high - low + 1) as u32;
+        // textplots counts y from below and leaves the dot row 0 to the line under the chart: hence the 1.
+        let inside = |(x, y): &(f64, f64)| ((x - (2 * left) as f64) as f32, (y - (4 * low) as f64) as f32 + 1.0);
+        let points: Vec<(bool, Vec<(f32, f32)>)> = placed
+            .iter()
+            .map(|(joined, points)| (*joined && points.len() > 1, points.iter().map(inside).collect()))
             .collect();
         let shapes: Vec<Shape<'_>> = points
             .iter()
@@ -196,10 +206,11 @@ impl Canvas {
             chart = chart.lineplot(shape);
         }
         chart.figures();
-        for (row, line) in chart.frame().lines().take(self.rows).enumerate() {
-            for (column, c) in line.chars().take(self.columns).enumerate() {
-                if ('\u{2800}'..='\u{28ff}').contains(&c) {
-                    cells[row * self.columns + column] = (c as u32 - 0x2800) as u8;
+        let mut cells = Vec::new();
+        for (line, row) in chart.frame().lines().zip((low..=high).rev()) {
+            for (c, column) in line.chars().zip(left..=right) {
+                if ('\u{2801}'..='\u{28ff}').contains(&c) {
+                    cells.push(((self.rows - 1 - row) * self.columns + column, (c as u32 - 0x2800) as u8));
                 }
             }
         }

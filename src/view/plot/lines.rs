@@ -243,7 +243,8 @@ pub fn largest_displacement(structure: &Structure, skeleton: &Skeleton, factors:
     let curves = skeleton.bends().then(|| ElasticCurves::of(structure, factors));
     let shares = skeleton.shares();
     let bars = structure.elements.iter().enumerate().filter(|(_, element)| element.bends());
-    let between = curves.iter().flat_map(|curves| bars.clone().filter_map(|(index, _)| curves.places(index, u, &shares)));
+    let between =
+        curves.iter().flat_map(|curves| bars.clone().filter_map(|(index, _)| curves.places(index, u, &shares)));
     let between = between.flatten();
     let nodes = u.iter().map(|&[x, y, z, ..]| length([x, y, z]));
     nodes.chain(between.map(length)).fold(0.0, f64::max)

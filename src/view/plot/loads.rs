@@ -1,13 +1,10 @@
 //! Arrows of loads in a picture: each kind scaled by its largest, those close together thinned.
 
-use std::cell::OnceCell;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 use super::depth::Seen;
-use crate::model::groups::Groups;
-use crate::model::structure::{ElementLoad, Load, LoadCase, Structure};
 use crate::model::units::Units;
-use crate::model::vector::{distance, length as size};
+use crate::model::vector::length as size;
 use crate::text::number::measured;
 use crate::view::projection::Projection;
 use crate::view::{force_unit, line_load_unit};
@@ -34,10 +31,10 @@ impl LoadKind {
 pub type Cases = u128;
 
 /// A point force or a weight: its kind, its place in the picture, its force in the model, its cases.
-type Point = (LoadKind, Seen, [f64; 3], Cases);
+pub(super) type Point = (LoadKind, Seen, [f64; 3], Cases);
 
 /// A line load: both ends of its line in the picture, its force per length at each in the model, its cases.
-type LineLoad = ([Seen; 2], [[f64; 3]; 2], Cases);
+pub(super) type LineLoad = ([Seen; 2], [[f64; 3]; 2], Cases);
 
 /// Loads in a picture, all cases added up.
 #[derive(Clone, Debug, Default)]
@@ -45,9 +42,9 @@ pub struct Loads {
     /// How forces are seen.
     projection: Projection,
     /// Point forces and weights.
-    points: Vec<Point>,
+    pub(super) points: Vec<Point>,
     /// Line loads: ends and values there.
-    lines: Vec<LineLoad>,
+    pub(super) lines: Vec<LineLoad>,
     /// Names of the load cases.
     names: Vec<String>,
 }
@@ -106,121 +103,12 @@ impl Arrow {
     }
 }
 
-/// A place in the model, and how it is displaced there.
-type Place = [[f64; 3]; 2];
-
-/// The loads of each case as they are under a factor of 1, where a structure has them: what takes a walk over all of them is
-/// done once, however they are multiplied, displaced and seen.
-#[derive(Clone, Debug, Default)]
-pub struct CaseLoads {
-    cases: Vec<CaseParts>,
-}
-
-/// The loads of a case.
-#[derive(Clone, Debug, Default)]
-struct CaseParts {
-    name: String,
-    points: Vec<(Place, [f64; 3])>,
-    /// Element, range on it: both ends and the values there.
-    lines: Vec<((usize, [u64; 2]), [Place; 2], [[f64; 3]; 2])>,
-    /// Owner, and what it weighs.
-    weights: Vec<((usize, usize), Weight<2>)>,
-}
-
-impl CaseLoads {
-    /// Those of a structure whose nodes are displaced by u.
-    pub fn of(structure: &Structure, u: &[[f64; 6]]) -> CaseLoads {
-        let at = |node: usize| -> Place {
-            let moved = u.get(node).copied().unwrap_or_default();
-            [structure.nodes[node].position, [moved[0], moved[1], moved[2]]]
-        };
-        let on_bar = |element: usize, distance: f64| -> Place {
-            let [a, b] = [0, 1].map(|end| at(structure.elements[element].nodes[end]));
-            let share = distance / length(structure, element);
-            std::array::from_fn(|k| std::array::from_fn(|c| a[k][c] + share * (b[k][c] - a[k][c])))
-        };
-        let owner = OnceCell::new();
-        let parts = |case: &LoadCase| {
-            let mut parts = CaseParts { name: case.name.clone(), ..CaseParts::default() };
-            let mut lines: HashMap<(usize, [u64; 2]), usize> = HashMap::new();
-            let mut weights: BTreeMap<(usize, usize), Weight<2>> = BTreeMap::new();
-            for load in &case.loads {
-                match *load {
-                    Load::Nodal { node, force, .. } => parts.points.push((at(node), force)),
-                    Load::Element { element, load: ElementLoad::Point { distance, force, .. } } => {
-                        parts.points.push((on_bar(element, distance), force));
-                    }
-                    Load::Element { element, load: ElementLoad::Line { range, value } } => {
-                        let key = (element, range.map(f64::to_bits));
-                        let index = *lines.entry(key).or_insert_with(|| {
-                            parts.lines.push((key, range.map(|distance| on_bar(element, distance)), [[0.0; 3]; 2]));
-                            parts.lines.len() - 1
-                        });
-                        add(&mut parts.lines[index].2, 1.0, &value);
-                    }
-                    Load::Element { element, load: ElementLoad::Body(value) } => {
-                        let volume = volume(structure, element);
-                        let nodes = &structure.elements[element].nodes;
-                        let count = nodes.len().max(1) as f64;
-                        let mut middle = [[0.0; 3]; 2];
-                        nodes.iter().for_each(|&node| add(&mut middle, 1.0 / count, &at(node)));
-                        let owner = owner.get_or_init(|| owners(structure));
-                        weights.entry(owner[element]).or_default().add(middle, value.map(|b| b * volume));
-                    }
-                    // They have no direction, or are not forces.
-                    Load::Element { load: ElementLoad::FreeStrain { .. }, .. } | Load::Settlement { .. } => {}
-                }
-            }
-            parts.weights = weights.into_iter().collect();
-            parts
-        };
-        CaseLoads { cases: structure.load_cases.iter().map(parts).collect() }
-    }
-
-    /// Those in a picture: each case times its factor, displacements times `by`.
-    pub fn seen(&self, factors: &[f64], by: f64, projection: &Projection) -> Loads {
-        let place = |[at, u]: &Place| -> [f64; 3] { std::array::from_fn(|c| at[c] + by * u[c]) };
-        let seen = |at: &Place| projection.seen(place(at));
-        let names = self.cases.iter().map(|case| case.name.clone()).collect();
-        let mut loads = Loads { names, projection: *projection, ..Loads::default() };
-        let mut points: Vec<Point> = Vec::new();
-        let mut lines: HashMap<(usize, [u64; 2]), usize> = HashMap::new();
-        let mut weights: BTreeMap<(usize, usize), (Weight<2>, Cases)> = BTreeMap::new();
-        let acting = self.cases.iter().zip(factors).enumerate().filter(|(_, (_, factor))| **factor != 0.0);
-        for (number, (case, &factor)) in acting {
-            let cases = 1 << number.min(127);
-            let times = |force: &[f64; 3]| force.map(|f| factor * f);
-            points.extend(case.points.iter().map(|(at, force)| (LoadKind::Force, seen(at), times(force), cases)));
-            for (key, ends, value) in &case.lines {
-                let index = *lines.entry(*key).or_insert_with(|| {
-                    loads.lines.push((ends.each_ref().map(seen), [[0.0; 3]; 2], 0));
-                    loads.lines.len() - 1
-                });
-                let (_, sums, of) = &mut loads.lines[index];
-                *of |= cases;
-                add(sums, factor, value);
-            }
-            for (owner, weight) in &case.weights {
-                let (sum, of) = weights.entry(*owner).or_default();
-                *of |= cases;
-                sum.join(factor, weight);
-            }
-        }
-        let weights = weights.into_values();
-        points.extend(weights.map(|(sum, cases)| (LoadKind::Weight, seen(&sum.centre()), sum.force, cases)));
-        loads.points = together(points, 0.0).0;
-        loads
-    }
-}
-
-/// Adds a multiple of two vectors to two others.
-fn add(sums: &mut [[f64; 3]; 2], factor: f64, values: &[[f64; 3]; 2]) {
-    for (sum, value) in sums.iter_mut().zip(values) {
-        *sum = std::array::from_fn(|c| sum[c] + factor * value[c]);
-    }
-}
-
 impl Loads {
+    /// Loads of cases of these names in a picture; what acts at one place is added up.
+    pub(super) fn new(names: Vec<String>, projection: &Projection, points: Vec<Point>, lines: Vec<LineLoad>) -> Loads {
+        Loads { projection: *projection, points: together(points, 0.0).0, lines, names }
+    }
+
     /// Arrows at least `apart` from one another: point forces nearer than that are added up, line loads have an arrow
     /// every `apart`. What cancels out has none.
     pub fn arrows(&self, apart: f64) -> Arrows {
@@ -296,8 +184,8 @@ impl Loads {
 
 /// The weight of several elements, or the sum of several forces; each place is K vectors.
 #[derive(Clone, Debug)]
-struct Weight<const K: usize> {
-    force: [f64; 3],
+pub(super) struct Weight<const K: usize> {
+    pub(super) force: [f64; 3],
     /// Σ |force|, and Σ |force|·place.
     size: f64,
     moments: [[f64; 3]; K],
@@ -310,13 +198,13 @@ impl<const K: usize> Default for Weight<K> {
 }
 
 impl<const K: usize> Weight<K> {
-    fn add(&mut self, place: [[f64; 3]; K], force: [f64; 3]) {
+    pub(super) fn add(&mut self, place: [[f64; 3]; K], force: [f64; 3]) {
         let own = size(force);
         self.join(1.0, &Weight { force, size: own, moments: place.map(|at| at.map(|x| own * x)) });
     }
 
     /// Adds another one times a factor.
-    fn join(&mut self, factor: f64, other: &Weight<K>) {
+    pub(super) fn join(&mut self, factor: f64, other: &Weight<K>) {
         self.force = std::array::from_fn(|c| self.force[c] + factor * other.force[c]);
         self.size += factor.abs() * other.size;
         for (sum, moment) in self.moments.iter_mut().zip(&other.moments) {
@@ -324,45 +212,9 @@ impl<const K: usize> Weight<K> {
         }
     }
 
-    fn centre(&self) -> [[f64; 3]; K] {
+    pub(super) fn centre(&self) -> [[f64; 3]; K] {
         self.moments.map(|moment| moment.map(|sum| sum / self.size))
     }
-}
-
-/// What an element belongs to, for its weight: (0, a node of the membranes or solids that hang together), or (1, a bar).
-fn owners(structure: &Structure) -> Vec<(usize, usize)> {
-    let mut bodies = Groups::new(structure.nodes.len());
-    for element in structure.elements.iter().filter(|element| element.shape().dimension() > 1) {
-        bodies.join_all(element.nodes.iter().copied());
-    }
-    let mut owner: Vec<(usize, usize)> =
-        structure.elements.iter().map(|element| (0, bodies.of(element.nodes[0]))).collect();
-    for (number, bar) in structure.bars.iter().enumerate() {
-        owner[bar.elements.clone()].fill((1, number));
-    }
-    owner
-}
-
-fn length(structure: &Structure, element: usize) -> f64 {
-    let [a, b] = [0, 1].map(|end| structure.nodes[structure.elements[element].nodes[end]].position);
-    distance(a, b)
-}
-
-/// Volume of an element.
-fn volume(structure: &Structure, index: usize) -> f64 {
-    let element = &structure.elements[index];
-    let extent = match element.shape().dimension() {
-        3 => {
-            let nodes: Vec<[f64; 3]> = element.nodes.iter().map(|&node| structure.nodes[node].position).collect();
-            element.shape().volume(&nodes)
-        }
-        2 => {
-            let nodes: Vec<[f64; 2]> = element.nodes.iter().map(|&node| structure.nodes[node].in_plane()).collect();
-            element.shape().area(&nodes)
-        }
-        _ => length(structure, index),
-    };
-    extent * element.area()
 }
 
 /// Point loads of one kind nearer than `apart` (or at one place) added up, at the centre of their sizes; whether any were

@@ -3,6 +3,7 @@
 
 pub mod bar_line;
 pub mod canvas;
+pub mod case_loads;
 pub mod chart;
 pub mod depth;
 pub mod diagram;

@@ -4,8 +4,9 @@
 use std::collections::HashMap;
 
 use super::bar_line::BarLine;
+use super::case_loads::CaseLoads;
 use super::lines::{Displaced, Face, Grid, Move, Outline, largest_displacement};
-use super::loads::{CaseLoads, Loads};
+use super::loads::Loads;
 use super::skeleton::Skeleton;
 use super::ticks::range;
 use super::{Series, diagram};
