@@ -25,7 +25,19 @@ struct Known {
     amounts: Vec<Arc<[f64]>>,
 }
 
+impl Clone for KnownCollapses {
+    fn clone(&self) -> Self {
+        KnownCollapses(Mutex::new(self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()))
+    }
+}
+
 impl KnownCollapses {
+    /// Knows what the other one does.
+    pub fn become_as(&self, other: &KnownCollapses) {
+        let other = other.clone().0.into_inner().unwrap_or_else(PoisonError::into_inner);
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = other;
+    }
+
     /// Whether one of them proves that this problem has no answer.
     pub(super) fn prove(&self, problem: &ContactProblem) -> bool {
         let known = self.0.lock().unwrap_or_else(PoisonError::into_inner).clone();

@@ -137,15 +137,17 @@ impl<'a> Lines<'a> {
         Lines { case, along, range, across, others, known: KnownCollapses::default() }
     }
 
-    /// The line at a value of `across`, and whether it was followed on exact paths.
+    /// The line at a value of `across`, whether it was followed on exact paths, and the collapses known behind it: those of
+    /// `self` stay as they are, so that lines may be looked at in any order.
     ///
     /// # Errors
     /// A value that the scenario cannot take, an interruption.
-    pub fn line(&self, at: f64) -> Result<(Line, bool), PathError> {
+    pub fn line(&self, at: f64) -> Result<(Line, bool, KnownCollapses), PathError> {
         let there = self.case.at(self.across, at)?;
         let step = StopOnly(self.case.watch);
-        let (parts, exact) = self.over(there.case(self.case).watched(&step))?;
-        Ok((Line { at, parts }, exact))
+        let own = Lines { known: self.known.clone(), ..*self };
+        let (parts, exact) = own.over(there.case(self.case).watched(&step))?;
+        Ok((Line { at, parts }, exact, own.known))
     }
 
     /// The parts of a line on which this case stands still, and whether they were followed on exact paths.

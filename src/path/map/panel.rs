@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::line::{Line, Lines};
 use crate::path::start::PathError;
+use crate::solve::known_collapses::KnownCollapses;
 use crate::text::words::short;
 
 /// Strips looked at first.
@@ -163,10 +164,12 @@ impl<'a> Cutter<'a> {
             lines.line(*at)
         };
         // Those before one that was stopped are kept.
-        let found: Vec<Result<(Line, bool), PathError>> = places.par_iter().map(look).collect();
+        let found: Vec<Result<(Line, bool, KnownCollapses), PathError>> = places.par_iter().map(look).collect();
         for found in found {
-            let (line, exact) = found?;
+            let (line, exact, known) = found?;
             self.exact &= exact;
+            // The last one's at the end, on however many threads.
+            lines.known.become_as(&known);
             self.seen.push(line);
         }
         Ok(self.seen[first..].to_vec())
