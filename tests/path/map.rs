@@ -166,6 +166,32 @@ fn an_arch_of_44_pairs_is_mapped_to_its_end() {
     }
 }
 
+/// Width and height of a block of weight 10 that 4 pushes at its top: it turns where 4 h > 5 b. No exact path leads over either,
+/// and that is said; the bound lies where halving finds it.
+#[test]
+fn two_lengths_are_mapped_by_answers_of_their_own() {
+    let text = r#"{ "format": "stickslip/1", "title": "block",
+        "parameters": { "b": { "value": 2, "min": 0.4, "max": 3 }, "h": { "value": 1, "min": 0.5, "max": 2 } },
+        "materials": { "m": { "E": 20000, "nu": 0.2 } },
+        "plates": [ { "id": "p", "origin": [0, 0], "size": ["b", "h"], "divisions": [1, 1], "thickness": 1, "material": "m",
+                      "plane": "stress" } ],
+        "contacts": [ { "id": "base", "edge": "p.bottom", "against": "ground", "friction": 0.6 } ],
+        "loads": { "weight": { "items": [ { "point": { "at": "p.top", "force": [0, -10] } } ] },
+                   "push": { "items": [ { "point": { "at": "p.top", "force": [4, 0] } } ] } } }"#;
+    let mut session = session(load_text("block", text, None).unwrap_or_else(|problems| panic!("{problems}")));
+    let map = report(&mut session, "map b 0.7..0.9 h 0.9..1.1").unwrap();
+    assert_eq!((&map["exact"], &map["complete"]), (&false.into(), &true.into()));
+    let regions = map["regions"].as_array().unwrap();
+    let collapse = regions.iter().find(|region| region["outcome"] == "ray").unwrap();
+    // ∫ 0.8 h − 0.7 dh over 0.9 … 1.1
+    near(&collapse["area"], 0.4 * (1.1 * 1.1 - 0.9 * 0.9) - 0.7 * 0.2, 1e-9);
+    assert_eq!((&collapse["verdict"], regions.len()), (&"certified".into(), 2));
+    assert!(
+        notes(&map).contains("no exact path leads over b") && notes(&map).contains("were not looked for along"),
+        "{map}"
+    );
+}
+
 /// What cannot be mapped is refused in words, and nothing is exported before there is a map.
 #[test]
 fn what_is_no_map_is_refused() {
