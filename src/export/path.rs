@@ -11,7 +11,9 @@ pub fn csv(out: &mut dyn Write, path: &PathRecord) -> io::Result<()> {
     for case in &path.cases {
         write!(out, ",{}", quoted(&format!("factor {case}")))?;
     }
-    writeln!(out, ",pair,state,x_n,x_t,z_n,z_t,change")?;
+    let is_in_space = path.places.iter().flat_map(|place| &place.pairs).any(|pair| pair.space.is_some());
+    let joints = if is_in_space { "x_n,x_t1,x_t2,z_n,z_t1,z_t2" } else { "x_n,x_t,z_n,z_t" };
+    writeln!(out, ",pair,state,{joints},change")?;
     for place in &path.places {
         for pair in &place.pairs {
             let stage = place.stage.map_or(String::new(), |stage| stage.to_string());
@@ -19,17 +21,12 @@ pub fn csv(out: &mut dyn Write, path: &PathRecord) -> io::Result<()> {
             for factor in &place.factors {
                 write!(out, ",{factor}")?;
             }
-            writeln!(
-                out,
-                ",{},{},{},{},{},{},{}",
-                quoted(&pair.id),
-                pair.state.word(),
-                pair.x_n,
-                pair.x_t,
-                pair.z_n,
-                pair.z_t,
-                quoted(&place.change)
-            )?;
+            write!(out, ",{},{}", quoted(&pair.id), pair.state.word())?;
+            let forces = std::iter::once(pair.x_n).chain(pair.friction());
+            for number in forces.chain([pair.z_n]).chain(pair.slip()) {
+                write!(out, ",{number}")?;
+            }
+            writeln!(out, ",{}", quoted(&place.change))?;
         }
     }
     Ok(())

@@ -83,6 +83,14 @@ impl Dimension {
         words.join(", ")
     }
 
+    /// In how many directions a pair slips.
+    pub fn slips(self) -> usize {
+        match self {
+            Dimension::Plane => 1,
+            Dimension::Space => 2,
+        }
+    }
+
     /// Unit tangents of the plane of contact with the unit normal `n`. In the plane its t: n turned by −90°
     /// (clockwise), n = (0, 1) gives t = (1, 0). In space t1, the projection of the global x on the plane of contact (of
     /// y where n ∥ x), and t2 = n × t1.

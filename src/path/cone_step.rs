@@ -7,7 +7,7 @@ use nalgebra::DVector;
 
 use super::start::{PathError, cold, state_of};
 use crate::answer::pairs::JointState;
-use crate::answer::record::State;
+use crate::answer::record::{PairState, State};
 use crate::contact::cone::{ConeFailure, ConeState};
 use crate::contact::on_cone::OnCone;
 use crate::contact::polygon::Polygon;
@@ -131,6 +131,17 @@ pub(super) fn behind_slips(mut problem: ContactProblem, from: &DVector<f64>) -> 
 fn slips_of(problem: &ContactProblem, z: &DVector<f64>) -> DVector<f64> {
     let pairs = problem.system.pair_count();
     DVector::from_fn(z.len(), |joint, _| if joint < pairs { 0.0 } else { z[joint] })
+}
+
+/// What is left of the inequalities that keep a pair in its state, along the normal and along the tangents: a gap, a contact
+/// force, a reserve, the length of a slip.
+pub(super) fn margins(pair: &PairState) -> [Option<f64>; 2] {
+    let slides = match (pair.state, pair.held) {
+        (State::Open, None) | (State::Closed, _) => None,
+        (State::Stick, _) | (State::Open, Some(State::Stick)) => Some(pair.reserve()),
+        _ => Some(pair.z_t),
+    };
+    [Some(if pair.state == State::Open { pair.z_n } else { pair.x_n }), slides]
 }
 
 fn scheme_of(problem: &ContactProblem, states: &[ConeState], z: &DVector<f64>) -> Scheme {

@@ -6,8 +6,8 @@
 use super::exact_cycle::{self, Repetition};
 use super::load_parameter::factors_at;
 use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until, limit_words};
-use super::start::{PathError, plane_system};
-use super::static_shakedown::{Static, static_limit, static_shakedown};
+use super::start::PathError;
+use super::static_shakedown::{Static, shakes_down_surely, static_limit, static_shakedown};
 use crate::answer::record::{PairState, Ray};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
@@ -27,9 +27,12 @@ const FIRST: usize = 4;
 /// Cycles followed at most, where nothing else is said.
 pub const MOST: usize = 256;
 /// What goes in space in place of `from`: slips have a direction there.
-pub(super) const INSTEAD_OF_SLIPS: &str = "`cycle LOAD A..B` begins at the unloaded structure";
 /// The bracket of the largest amplitude that shakes down is narrowed to this share of it.
 const NARROW: f64 = 1e-9;
+/// In space, where slips are known to the accuracy of the steps, to this one …
+const NARROW_IN_SPACE: f64 = 1e-5;
+/// … and by so many cycles at each amplitude: near the largest one they come to rest slowly.
+const MOST_IN_SPACE: usize = 64;
 /// The amplitude is doubled this often in search of one that does not.
 const DOUBLINGS: usize = 40;
 
@@ -57,8 +60,11 @@ const MOST_FORCE: f64 = 1e9;
 pub struct PairSlip {
     /// Pair id.
     pub pair: String,
-    /// z_τ.
+    /// z_τ; in space its length.
     pub slip: f64,
+    /// In space along t1 and t2.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z_t: Option<[f64; 2]>,
 }
 
 /// One pair over one cycle.
@@ -117,7 +123,12 @@ impl Cycle {
     /// The slips with which it begins at the first value.
     pub fn start(&self) -> Vec<PairSlip> {
         let pairs = self.history.stages.first().map_or(&[][..], |stage| &stage.end.pairs);
-        pairs.iter().map(|pair| PairSlip { pair: pair.id.clone(), slip: pair.z_t }).collect()
+        let slip = |pair: &PairState| PairSlip {
+            pair: pair.id.clone(),
+            slip: pair.z_t,
+            z_t: pair.space.map(|space| space.z_t),
+        };
+        pairs.iter().map(slip).collect()
     }
 
     /// The collapse on the way, where there is one.
@@ -130,10 +141,12 @@ impl Cycle {
 }
 
 /// Refuses slips whose forces would leave no digits of those of the loads.
-fn within_reason(problem: &ContactProblem, slips: &[f64]) -> Result<(), PathError> {
+fn within_reason(problem: &ContactProblem, slips: &[[f64; 2]]) -> Result<(), PathError> {
     let (system, loads) = (&problem.system, problem.load_terms.amax());
-    for (pair, slip) in std::iter::zip(&system.pairs, slips) {
-        let Some(joint) = pair.plane_tangential() else { continue };
+    let slips = std::iter::zip(&system.pairs, slips);
+    for (pair, joint, slip) in
+        slips.flat_map(|(pair, slip)| pair.tangential.clone().zip(slip).map(move |(j, s)| (pair, j, s)))
+    {
         let force = system.stiffness.column(joint).amax() * slip.abs();
         if !force.is_finite() || (loads > 0.0 && force > MOST_FORCE * loads) {
             return Err(PathError::Missing(format!(
@@ -241,7 +254,6 @@ pub(super) fn followed(
     let (softest, same) = (softest(system), if system.is_in_space() { SAME_IN_SPACE } else { SAME });
     let (start, turned) = (factors_at(case, name, a)?, factors_at(case, name, b)?);
     if let Begin::Slips(slips) = begin {
-        plane_system(case.prepared, "cycle … from", INSTEAD_OF_SLIPS)?;
         within_reason(&contact_problem(system, &start, case.values), slips)?;
     }
     let mut targets = vec![start.clone()];
@@ -449,9 +461,12 @@ pub struct ShakedownLimit {
 /// # Errors
 /// As [`cycle`].
 pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> Result<ShakedownLimit, PathError> {
-    // In space slips are known to the accuracy of the steps: a bracket of nine digits would say more than they do.
-    plane_system(case.prepared, "limit cycle", "`cycle LOAD A..B` tells of one amplitude")?;
-    let kind = |to: f64| followed(case, name, [from, to], MOST, &Begin::Unloaded).map(|found| found.kind);
+    let system = case.prepared.system().ok_or(PathError::Plain("limit cycle"))?;
+    let (narrow, most) = if system.is_in_space() { (NARROW_IN_SPACE, MOST_IN_SPACE) } else { (NARROW, MOST) };
+    let kind = |to: f64| match shakes_down_surely(case, name, [from, to])? {
+        true => Ok(Kind::ShakesDown),
+        false => followed(case, name, [from, to], most, &Begin::Unloaded).map(|found| found.kind),
+    };
     let (mut good, mut bad) = (from, None);
     let mut to = first;
     for round in 0..DOUBLINGS {
@@ -471,7 +486,7 @@ pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> R
         let every_start = static_limit(case, name, [from, good])?;
         return Ok(ShakedownLimit { from, shakes_down: good, beyond: None, every_start });
     };
-    while (beyond - good).abs() > NARROW * (beyond - from).abs().max(f64::MIN_POSITIVE) {
+    while (beyond - good).abs() > narrow * (beyond - from).abs().max(f64::MIN_POSITIVE) {
         let middle = 0.5 * (good + beyond);
         if middle == good || middle == beyond {
             break;
@@ -483,5 +498,9 @@ pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> R
         }
     }
     let every_start = static_limit(case, name, [from, beyond])?;
+    // What was followed in steps tells no more digits than these: the theorem does.
+    if let Some(proved) = every_start.0.filter(|proved| (good - proved).abs() <= narrow * (beyond - from).abs()) {
+        good = proved;
+    }
     Ok(ShakedownLimit { from, shakes_down: good, beyond: Some((beyond, what)), every_start })
 }

@@ -5,15 +5,19 @@
 //! ```text
 //!   max ± s_i   over   λ = R z + load,  x_n ≥ 0,  |x_τ| ≤ f x_n + c,   x_n = 0 ≤ z_n in pairs that are open without slips
 //! ```
-//! and at rest in the motions that cost no force.
+//! and at rest in the motions that cost no force. In space s_i is each component of the slip, and a polygon inside of Coulomb's
+//! disk stands for it.
+
+use std::f64::consts::PI;
 
 use nalgebra::DVector;
 
-use super::cycle::{Cycle, INSTEAD_OF_SLIPS, Kind, PairSlip, Turn, cycle, followed};
+use super::cycle::{Cycle, Kind, PairSlip, Turn, cycle, followed};
 use super::load_parameter::factors_at;
 use super::stages::{Begin, loose_motions};
-use super::start::{PathError, plane_system};
+use super::start::PathError;
 use super::static_shakedown::{SECONDS, Static, units};
+use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactPair;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
@@ -21,10 +25,14 @@ use crate::solve::Case;
 use crate::solve::problem::contact_problem;
 use crate::text::number::short;
 
+/// Facets of the polygon inside of the disk.
+const FACETS: u16 = 16;
 /// Pairs up to which each one's extreme slips are tried.
 pub const MOST_PAIRS: usize = 40;
 /// What two cycles dissipate and leave behind is the same where it differs by less than this share of the largest.
 const SAME: f64 = 1e-9;
+/// In space, where cycles come near to the one that repeats and are known to the accuracy of the steps.
+const SAME_IN_SPACE: f64 = 1e-6;
 
 /// What a cycle comes to after a start.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -83,9 +91,9 @@ impl Starts {
 /// Follows a load cycle after no slips and after the largest slips both ways of each pair.
 ///
 /// # Errors
-/// As [`cycle`]; in space, too many pairs, joints that repeat one another.
+/// As [`cycle`]; too many pairs, joints that repeat one another.
 pub fn from_all(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Result<Starts, PathError> {
-    let system = plane_system(case.prepared, "cycle … from all", INSTEAD_OF_SLIPS)?;
+    let system = case.prepared.system().ok_or(PathError::Plain("cycle … from all"))?;
     if let Some(refusal) = system.dependence_refusal("cycle … from all") {
         return Err(PathError::Missing(refusal));
     }
@@ -94,10 +102,10 @@ pub fn from_all(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Resu
         return Err(PathError::Missing(format!(
             "cycle … from all: {count} pairs make {} histories; up to {MOST_PAIRS} pairs are followed: give slips with `from \
              PAIR=SLIP …`",
-            2 * count + 1
+            1 + 2 * system.pairs.iter().map(|pair| pair.tangential.len()).sum::<usize>()
         )));
     }
-    let zero = cycle(case, name, ends, most, &Begin::Slips(vec![0.0; count]))?;
+    let zero = cycle(case, name, ends, most, &Begin::Slips(vec![[0.0; 2]; count]))?;
     let first = &zero.history.stages[0].end.pairs;
     let open: Vec<bool> = first.iter().map(|pair| pair.z_n > 0.0).collect();
     let problem = contact_problem(system, &factors_at(case, name, ends[0])?, case.values);
@@ -112,10 +120,11 @@ pub fn from_all(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Resu
     }
     let largest = |of: fn(&StartResult) -> f64| starts.iter().map(of).fold(0.0, f64::max);
     let (lost, net) = (largest(|start| start.dissipated), largest(|start| start.net));
+    let same = if system.is_in_space() { SAME_IN_SPACE } else { SAME };
     let differs = |start: &StartResult| {
         start.kind != starts[0].kind
-            || (start.dissipated - starts[0].dissipated).abs() > SAME * lost
-            || (start.net - starts[0].net).abs() > SAME * net
+            || (start.dissipated - starts[0].dissipated).abs() > same * lost
+            || (start.net - starts[0].net).abs() > same * net
     };
     let decides = starts.iter().any(differs);
     Ok(Starts { name: name.to_owned(), ends, starts, decides, every_start })
@@ -139,17 +148,28 @@ impl StartResult {
     }
 }
 
-fn close(a: &[f64], b: &[f64]) -> bool {
+fn close(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
+    let (a, b) = (a.as_flattened(), b.as_flattened());
     let size = a.iter().chain(b).fold(0.0, |most: f64, slip| most.max(slip.abs()));
     a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME * size)
 }
 
-/// The slips of all pairs at which one of them is largest or least, with their names.
-fn extreme_slips(
-    problem: &ContactProblem,
-    open: &[bool],
-    case: Case<'_>,
-) -> Result<Vec<(String, Vec<f64>)>, PathError> {
+/// Unit directions of slip, and the share of the bound within which the polygon that they make lies inside of the disk: in
+/// the plane ±t and all of it.
+fn directions(tangents: usize) -> (Vec<Vec<f64>>, f64) {
+    if tangents < 2 {
+        return (vec![vec![1.0; tangents], vec![-1.0; tangents]], 1.0);
+    }
+    let polygon = Polygon::regular(FACETS, 0.0);
+    let facets = (0..polygon.facets()).map(|facet| polygon.direction(facet).to_vec()).collect();
+    (facets, (PI / polygon.facets() as f64).cos())
+}
+
+/// A start by its name, with the slips of all pairs.
+type Named = (String, Vec<[f64; 2]>);
+
+/// The slips of all pairs at which one of them is largest or least.
+fn extreme_slips(problem: &ContactProblem, open: &[bool], case: Case<'_>) -> Result<Vec<Named>, PathError> {
     let system = &*problem.system;
     let mut moving: Vec<usize> = (0..system.pair_count()).filter(|&i| open[i]).collect();
     moving.extend(system.pairs.iter().flat_map(|pair| pair.tangential.clone()));
@@ -171,12 +191,19 @@ fn extreme_slips(
         } else if !law.is_bilateral() {
             program.at_most(row(i, -1.0), constants[i] / force);
         }
-        let Some(joint) = pair.plane_tangential() else { continue };
-        let (f, c) = (if open[i] { 0.0 } else { law.friction() }, law.fixed_bound());
-        for sign in [1.0, -1.0] {
-            let mut terms = row(joint, sign);
-            terms.extend(row(i, -f));
-            program.at_most(terms, (f * constants[i] + c - sign * constants[joint]) / force);
+        if pair.tangential.is_empty() {
+            continue;
+        }
+        let (directions, inside) = directions(pair.tangential.len());
+        let (f, c) = (if open[i] { 0.0 } else { inside * law.friction() }, inside * law.fixed_bound());
+        for direction in directions {
+            let mut terms = row(i, -f);
+            let mut constant = f * constants[i] + c;
+            for (joint, part) in pair.tangential.clone().zip(direction) {
+                terms.extend(row(joint, part));
+                constant -= part * constants[joint];
+            }
+            program.at_most(terms, constant / force);
         }
     }
     for motion in loose_motions(system, &moving).column_iter() {
@@ -184,10 +211,14 @@ fn extreme_slips(
     }
     let mut found = Vec::new();
     for (place, &joint) in moving.iter().enumerate() {
-        let Some(pair) = system.pairs.iter().position(|pair| pair.plane_tangential() == Some(joint)) else { continue };
+        let Some(pair) = system.pairs.iter().position(|pair| pair.tangential.contains(&joint)) else { continue };
         if open[pair] {
             continue;
         }
+        let along = match system.pairs[pair].is_in_space() {
+            true => format!(" along t{}", joint - system.pairs[pair].tangential.start + 1),
+            false => String::new(),
+        };
         for (word, sign) in [("most", -1.0), ("least", 1.0)] {
             if case.watch.stop() {
                 return Err(PathError::Interrupted);
@@ -196,8 +227,13 @@ fn extreme_slips(
             let Outcome::Optimum(optimum) = program.solve(SECONDS) else { continue };
             let mut slips = DVector::zeros(system.joint_count());
             moving.iter().zip(&optimum.x).for_each(|(&joint, x)| slips[joint] = x * length);
-            let of_pair = |pair: &ContactPair| pair.plane_tangential().map_or(0.0, |joint| slips[joint]);
-            found.push((format!("{word} {}", system.pairs[pair].id), system.pairs.iter().map(of_pair).collect()));
+            let of_pair = |pair: &ContactPair| {
+                let mut parts = [0.0; 2];
+                pair.tangential.clone().zip(&mut parts).for_each(|(joint, part)| *part = slips[joint]);
+                parts
+            };
+            let label = format!("{word} {}{along}", system.pairs[pair].id);
+            found.push((label, system.pairs.iter().map(of_pair).collect()));
         }
     }
     Ok(found)

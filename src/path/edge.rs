@@ -164,7 +164,8 @@ fn end_of_path(case: Case<'_>, name: &str, answer: &Run, collapse: &Run) -> Resu
     let end = Way::follow(here, &solved, name, target).map(|way| match &way {
         Way::Friction(path) => path.schemes.last().map(|last| last.to).filter(|_| path.end == PathEnd::NoAnswer),
         Way::Load(path) if !path.from_zero => path.limit(),
-        Way::Load(_) => None,
+        // Narrowed as the bracket is.
+        Way::Load(_) | Way::OnCone(_) => None,
     });
     let room = 2.0 * (answer.value - collapse.value).abs();
     match end {

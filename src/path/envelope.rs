@@ -3,7 +3,7 @@
 
 use super::profile::{Shape, profile};
 use super::quantity::{Facts, Value};
-use super::route::Route;
+use super::route::{Known, Route};
 use super::start::PathError;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
@@ -88,11 +88,11 @@ fn on_route(route: &Route<'_>, axis: &Axis, quantities: &[Quantity]) -> Envelope
         peaks
     };
     let [low, high] = route.covered();
-    let mut notes = route.ends();
+    let mut notes = route.notes();
     if (low > axis.range[0] || high < axis.range[1]) && notes.is_empty() {
         notes.push(format!("the path leads from {low} to {high} only"));
     }
-    Envelope { peaks: quantities.iter().map(of).collect(), exact: true, notes }
+    Envelope { peaks: quantities.iter().map(of).collect(), exact: route.known() == Known::Exactly, notes }
 }
 
 /// The quantities of an answer of its own; `None` without one.

@@ -3,7 +3,7 @@
 
 use super::profile::{ROUNDING, Shape, number, profile, zero};
 use super::quantity::Value;
-use super::route::Route;
+use super::route::{Known, Route};
 use super::start::PathError;
 use crate::model::quantity::Quantity;
 use crate::path::quantity::Facts;
@@ -28,7 +28,7 @@ pub enum Wanted {
 pub struct Place {
     /// The value of the parameter; in a bracket its middle.
     pub value: f64,
-    /// Where it is not exact: values with answers, or proofs of none, between which it lies.
+    /// Where no path leads: values with answers, or proofs of none, between which it lies.
     pub bracket: Option<[f64; 2]>,
     /// The quantity just below; null where it has no value.
     pub below: Option<serde_json::Value>,
@@ -158,9 +158,9 @@ fn on_route(route: &Route<'_>, range: [f64; 2], quantity: &Quantity, wanted: &Wa
         above: None,
         change: route.change(value),
     });
-    found.exact = true;
+    found.exact = route.known() == Known::Exactly;
     found.covered = route.covered();
-    found.notes = route.ends();
+    found.notes = route.notes();
     let [low, high] = found.covered;
     if (low > range[0] || high < range[1]) && found.notes.is_empty() {
         found.notes.push("the path does not lead through the whole range".to_owned());

@@ -115,9 +115,9 @@ impl PathRecord {
             pairs: at.pairs.clone(),
         });
         PathRecord {
-            followed: if path.over_friction { Followed::Friction } else { Followed::Load },
+            followed: if path.over.is_friction() { Followed::Friction } else { Followed::Load },
             name: path.name.clone(),
-            cases: if path.over_friction { Vec::new() } else { cases.to_vec() },
+            cases: if path.over.is_friction() { Vec::new() } else { cases.to_vec() },
             places: places.collect(),
             end: path.end_sentence(),
         }

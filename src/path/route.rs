@@ -1,12 +1,14 @@
-//! The answer over a parameter from one value to another along an exact path: what `find` and `envelope` look at.
+//! The answer over a parameter from one value to another along a path: what `find`, `envelope` and `map` look at.
 //!
 //! The path starts from a cold answer at the lower end; where there is none, at the upper end, or else at the present
 //! value in both directions. Between two breakpoints one working scheme holds, so that every quantity is a smooth
-//! function there; on a load path those that are linear in forces and displacements are straight lines.
+//! function there; on a load path those that are linear in forces and displacements are straight lines. In space the path is
+//! taken in steps on Coulomb's cone.
 
 use std::sync::Arc;
 
 use super::end::PathEnd;
+use super::on_cone::leads;
 use super::quantity::{Facts, NoValue, Value};
 use super::start::PathError;
 use super::way::Way;
@@ -39,6 +41,22 @@ pub struct Stretch {
     index: usize,
 }
 
+/// How well an answer over a parameter is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Known {
+    /// Along exact paths.
+    Exactly,
+    /// In steps on Coulomb's cone: changes are narrowed to some 1e-12 of their place, what is done and undone within a step may
+    /// be missed.
+    InSteps,
+    /// By answers of their own, with nothing between them.
+    AtPlaces,
+}
+
+/// What is to be said of an answer followed in steps.
+pub const IN_STEPS: &str = "followed on Coulomb's cone in steps, each an answer that passed its check; that nothing else \
+                            happens within a step is not proved";
+
 /// The answer over a parameter.
 pub struct Route<'a> {
     case: Case<'a>,
@@ -49,12 +67,12 @@ pub struct Route<'a> {
 }
 
 impl<'a> Route<'a> {
-    /// Follows the answer over `range`. `None` where no exact path leads over this parameter.
+    /// Follows the answer over `range`. `None` where no path leads over this parameter.
     ///
     /// # Errors
     /// No answer at either end or at the present value; see [`PathError`].
     pub fn new(case: Case<'a>, name: &str, range: [f64; 2]) -> Result<Option<Route<'a>>, PathError> {
-        Route::from_start(case, name, range, false, &|case: Case<'_>| Ok(case.solve_pairs()?.if_answer()))
+        Route::from_start(case, name, range, false, &|case: Case<'_>| Ok(case.solve_pairs()?.if_answer(case.rules.cone)))
     }
 
     /// The same from an answer that `solve` finds, looking for a start at the upper end first where that is wanted: where there
@@ -69,7 +87,7 @@ impl<'a> Route<'a> {
         upper: bool,
         solve: Start<'_>,
     ) -> Result<Option<Route<'a>>, PathError> {
-        if case.prepared.system().is_some_and(|system| system.is_in_space()) {
+        if case.prepared.system().is_some_and(|system| system.is_in_space()) && !leads(case.prepared, case.rules) {
             return Ok(None);
         }
         let mut route = Route { case, name: name.to_owned(), legs: Vec::new(), stretches: Vec::new() };
@@ -129,15 +147,33 @@ impl Route<'_> {
         [low, self.stretches.iter().map(|stretch| stretch.to).fold(f64::NEG_INFINITY, f64::max)]
     }
 
+    /// How well it is known.
+    pub fn known(&self) -> Known {
+        let in_steps = self.legs.iter().any(|leg| matches!(leg.way, Way::OnCone(_)));
+        if in_steps { Known::InSteps } else { Known::Exactly }
+    }
+
     /// Whether everything on it is straight between its breakpoints: a path over a load.
     pub fn is_straight(&self) -> bool {
         self.legs.iter().all(|leg| matches!(leg.way, Way::Load(_)))
     }
 
-    /// Why the path does not lead to both ends of the range, in sentences.
-    pub fn ends(&self) -> Vec<String> {
+    /// Why the path does not lead to both ends of the range, and how it was followed where not exactly, in sentences.
+    pub fn notes(&self) -> Vec<String> {
         let early = self.legs.iter().filter(|leg| *leg.way.end() != PathEnd::Target);
-        early.map(|leg| leg.way.end_sentence()).collect()
+        let steps = (self.known() == Known::InSteps).then(|| IN_STEPS.to_owned());
+        early.map(|leg| leg.way.end_sentence()).chain(steps).collect()
+    }
+
+    /// Whether it is certified that there is no answer further on, downwards or upwards: the loads that forces can balance at
+    /// all are a convex set, so that a path over a load which ends in a certified collapse has left it for good.
+    pub fn ends_for_good(&self, upwards: bool) -> bool {
+        self.legs.iter().any(|leg| {
+            let ends = leg.way.stretches();
+            let rises = ends.first().zip(ends.last()).is_some_and(|(first, last)| last[1] > first[0]);
+            let over_load = matches!(&leg.way, Way::OnCone(path) if !path.over.is_friction());
+            over_load && rises == upwards && matches!(leg.way.end(), PathEnd::Collapse(_))
+        })
     }
 
     /// What changes at a value, in words; `None` where nothing does.
@@ -154,6 +190,7 @@ impl Route<'_> {
         match &leg.way {
             Way::Load(path) => path.pairs_within(path.ground(prepared), stretch.index, at),
             Way::Friction(path) => path.pairs_within(prepared, &self.values_at(leg, at), stretch.index),
+            Way::OnCone(path) => path.pairs_within(leg.there.case(self.case), stretch.index, at),
         }
     }
 
@@ -182,6 +219,9 @@ impl Route<'_> {
         let (prepared, factors) = match &leg.way {
             Way::Load(path) => (path.ground(&leg.there.prepared), path.case_factors(at)),
             Way::Friction(_) => (&*leg.there.prepared, factors(&leg.there.prepared, &values)),
+            Way::OnCone(path) => {
+                (path.over.ground(&leg.there.prepared), path.over.factors(&leg.there.prepared, &values, at))
+            }
         };
         Some(read(&Facts::of_state(Case { prepared, values: &values, ..self.case }, factors, &pairs)))
     }

@@ -8,7 +8,7 @@
 use nalgebra::DVector;
 
 use super::load_parameter::factors_at;
-use super::stages::{Begin, Moment, follow_factors};
+use super::stages::{Begin, HistoryEnd, Moment, follow_factors};
 use super::start::PathError;
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
@@ -17,11 +17,11 @@ use crate::lcp::problem::NOISE;
 use crate::solve::Case;
 use crate::solve::problem::{contact_problem, factors};
 
-/// Seconds for one linear programme.
+/// Seconds for one programme: linear in the plane, with a cone for each pair in space.
 pub(super) const SECONDS: f64 = 10.0;
-/// How far before the end of the linear programme the proof is tried, as shares of the way: at the end itself no reserve is
+/// How far before the end of the programme the proof is tried, as shares of the way: at the end itself no reserve is
 /// left.
-const BEFORE: [f64; 4] = [1e-9, 1e-8, 1e-7, 1e-6];
+const BEFORE: [f64; 6] = [1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4];
 /// Pairs up to which slips are sought.
 pub const MOST_PAIRS: usize = 500;
 
@@ -53,8 +53,8 @@ struct Place {
 
 struct Search<'a> {
     problem: &'a ContactProblem,
-    /// Pair and joint of every tangential joint.
-    joints: Vec<(usize, usize)>,
+    /// Every tangential joint.
+    joints: Vec<usize>,
     /// By what forces and displacements are divided in the programmes.
     units: (f64, f64),
 }
@@ -68,11 +68,7 @@ pub(super) fn units(force: f64, stiffness: f64) -> (f64, f64) {
 /// Why the theorem cannot be asked; `None` where it can.
 fn refusal(problem: &ContactProblem) -> Option<Static> {
     let system = &*problem.system;
-    if system.is_in_space() {
-        let why = "the static theorem of shakedown was not asked, its linear programme knows slips in the plane only";
-        return Some(Static::Inapplicable(why.to_owned()));
-    }
-    if system.force_form.is_some() {
+    if system.force_form.is_some() || system.yielding.is_some() {
         let why = "joints repeat one another, so that contact forces are not unique and the static theorem of shakedown does \
                    not hold";
         return Some(Static::Inapplicable(why.to_owned()));
@@ -92,9 +88,8 @@ fn coupled(problem: &ContactProblem) -> Option<(usize, usize)> {
     let system: &ContactSystem = &problem.system;
     let unilateral = (0..system.pair_count()).filter(|&i| !problem.laws[i].is_bilateral());
     unilateral.into_iter().find_map(|i| {
-        let slips = system.pairs.iter().enumerate().filter_map(|(j, pair)| Some((j, pair.plane_tangential()?)));
         let strong = |t: usize| system.stiffness[(i, t)].abs() > system.entry_noise(i, t);
-        slips.into_iter().find(|&(_, t)| strong(t)).map(|(j, _)| (i, j))
+        system.pairs.iter().position(|pair| pair.tangential.clone().any(strong)).map(|j| (i, j))
     })
 }
 
@@ -102,56 +97,73 @@ impl Place {
     fn of(problem: &ContactProblem, moment: &Moment) -> Place {
         let there = problem.clone().with_factors(&moment.factors);
         let pairs = problem.system.pairs.iter().zip(&moment.pairs);
-        let bounds = pairs.map(|(pair, state)| pair.plane_tangential().map(|_| state.bound)).collect();
+        let bounds = pairs.map(|(pair, state)| (!pair.tangential.is_empty()).then_some(state.bound)).collect();
         Place { t: moment.t, bounds, load: there.load, terms: there.load_terms }
     }
 }
 
+/// Terms of a row of a programme.
+type Terms = Vec<(usize, f64)>;
+
 impl Search<'_> {
     fn new<'p>(problem: &'p ContactProblem, places: &[Place]) -> Search<'p> {
-        let pairs = problem.system.pairs.iter().enumerate();
-        let joints: Vec<(usize, usize)> = pairs.filter_map(|(i, pair)| Some((i, pair.plane_tangential()?))).collect();
+        let joints: Vec<usize> = problem.system.pairs.iter().flat_map(|pair| pair.tangential.clone()).collect();
         let bounds = places.iter().flat_map(|place| place.bounds.iter().flatten());
-        let loads = places.iter().flat_map(|place| joints.iter().map(|&(_, t)| &place.load[t]));
+        let loads = places.iter().flat_map(|place| joints.iter().map(|&t| &place.load[t]));
         let force = bounds.chain(loads).fold(0.0, |most: f64, value| most.max(value.abs()));
-        let stiffness = joints.iter().map(|&(_, t)| problem.system.stiffness[(t, t)]).fold(0.0, f64::max);
+        let stiffness = joints.iter().map(|&t| problem.system.stiffness[(t, t)]).fold(0.0, f64::max);
         Search { problem, joints, units: units(force, stiffness) }
     }
 
-    /// R s of the k-th tangential joint as terms of a programme.
-    fn forces(&self, k: usize, sign: f64) -> Vec<(usize, f64)> {
+    /// R s of a tangential joint as terms of a programme.
+    fn forces(&self, joint: usize) -> Terms {
         let r = &self.problem.system.stiffness;
         let (force, length) = self.units;
-        let row = self.joints[k].1;
-        let entry = |&(_, t): &(usize, usize)| sign * r[(row, t)] * length / force;
+        let entry = |&t: &usize| r[(joint, t)] * length / force;
         self.joints.iter().map(entry).enumerate().filter(|(_, entry)| *entry != 0.0).collect()
     }
 
-    /// Variables for the slips.
-    fn program(&self) -> LinearProgram {
+    /// Variables for the slips, and one that is 1.
+    fn program(&self) -> (LinearProgram, usize) {
         let mut program = LinearProgram::default();
         self.joints.iter().for_each(|_| _ = program.variable(0.0));
-        program
+        let one = program.variable(0.0);
+        program.equal(vec![(one, 1.0)], 1.0);
+        (program, one)
     }
 
-    /// Demands of the slips that no pair is beyond its bound at a place; `extra`: a variable added to both sides of it.
-    fn demand(&self, program: &mut LinearProgram, place: &Place, extra: Option<usize>) {
-        for (k, &(pair, joint)) in self.joints.iter().enumerate() {
-            let Some(bound) = place.bounds[pair] else { continue };
-            for sign in [1.0, -1.0] {
-                let mut terms = self.forces(k, sign);
-                terms.extend(extra.map(|variable| (variable, 1.0)));
-                program.at_most(terms, (bound - sign * place.load[joint]) / self.units.0);
-            }
+    /// Demands of the slips that no pair is beyond its bound at a place; what bounds and loads are there besides: `bound` and
+    /// `load` of the pair and of the joint, over the unit of force.
+    fn demand(
+        &self,
+        program: &mut LinearProgram,
+        place: &Place,
+        bound: impl Fn(usize, f64) -> Terms,
+        load: impl Fn(usize) -> Terms,
+    ) {
+        let pairs = self.problem.system.pairs.iter().zip(&place.bounds).enumerate();
+        for (i, (pair, most)) in pairs {
+            let Some(most) = most else { continue };
+            let part = |joint: usize| [self.forces(joint), load(joint)].concat();
+            let parts: Vec<Terms> = pair.tangential.clone().map(part).collect();
+            program.at_least_length(&bound(i, *most), &parts);
         }
+    }
+
+    /// The same at a place as it is, with `extra`: a variable taken from every bound.
+    fn demand_at(&self, program: &mut LinearProgram, place: &Place, one: usize, extra: Option<usize>) {
+        let force = self.units.0;
+        let bound =
+            |_, most: f64| [(one, most / force)].into_iter().chain(extra.map(|reserve| (reserve, -1.0))).collect();
+        self.demand(program, place, bound, |joint| vec![(one, place.load[joint] / force)]);
     }
 
     /// The slips that leave the most reserve at these places.
     fn most_reserve(&self, places: &[Place]) -> Option<DVector<f64>> {
-        let mut program = self.program();
+        let (mut program, one) = self.program();
         let reserve = program.variable(-1.0);
         program.at_most(vec![(reserve, 1.0)], 1.0);
-        places.iter().for_each(|place| self.demand(&mut program, place, Some(reserve)));
+        places.iter().for_each(|place| self.demand_at(&mut program, place, one, Some(reserve)));
         match program.solve(SECONDS) {
             Outcome::Optimum(found) => Some(self.slips(&found.x)),
             _ => None,
@@ -160,7 +172,7 @@ impl Search<'_> {
 
     fn slips(&self, x: &[f64]) -> DVector<f64> {
         let mut slips = DVector::zeros(self.problem.system.joint_count());
-        self.joints.iter().zip(x).for_each(|(&(_, joint), x)| slips[joint] = x * self.units.1);
+        self.joints.iter().zip(x).for_each(|(&joint, x)| slips[joint] = x * self.units.1);
         slips
     }
 
@@ -170,10 +182,12 @@ impl Search<'_> {
         let (own, sizes) = (r * slips, r.abs() * slips.abs());
         let mut least = f64::INFINITY;
         for place in places {
-            for &(pair, joint) in &self.joints {
-                let Some(bound) = place.bounds[pair] else { continue };
-                let noise = NOISE * (place.terms[joint] + sizes[joint] + bound);
-                least = least.min(bound - (place.load[joint] + own[joint]).abs() - noise);
+            for (pair, bound) in self.problem.system.pairs.iter().zip(&place.bounds) {
+                let Some(bound) = bound else { continue };
+                let joints = || pair.tangential.clone();
+                let force = joints().fold(0.0, |force: f64, joint| force.hypot(place.load[joint] + own[joint]));
+                let terms: f64 = joints().map(|joint| place.terms[joint] + sizes[joint]).sum();
+                least = least.min(bound - force - NOISE * (terms + bound));
             }
         }
         least
@@ -197,19 +211,46 @@ pub fn static_shakedown<'m>(case: Case<'_>, moments: impl Iterator<Item = &'m Mo
     reserve.filter(|reserve| *reserve > 0.0).map_or(Static::Nothing, Static::Proved)
 }
 
+/// The way of a load from one value to another.
+struct SecondWay {
+    problem: ContactProblem,
+    places: Vec<Place>,
+    /// Whether it reaches its end.
+    complete: bool,
+}
+
+/// The second way of a load from the unloaded structure to one value and on to another. `Err` where the theorem says nothing.
+fn second_way(case: Case<'_>, name: &str, [from, to]: [f64; 2]) -> Result<Result<SecondWay, Static>, PathError> {
+    let Some(problem) = present(case) else { return Ok(Err(Static::NotAsked)) };
+    if let Some(refusal) = refusal(&problem) {
+        return Ok(Err(refusal));
+    }
+    let targets = [factors_at(case, name, from)?, factors_at(case, name, to)?];
+    let history = follow_factors(case, &Begin::Unloaded, &targets)?;
+    let Some(stage) = history.stages.get(1) else { return Ok(Err(Static::Nothing)) };
+    let places = stage.moments.iter().map(|moment| Place::of(&problem, moment)).collect();
+    Ok(Ok(SecondWay { problem, places, complete: history.end == HistoryEnd::Complete }))
+}
+
+/// Whether the theorem proves that a load between these values shakes down from every start.
+///
+/// # Errors
+/// See [`super::cycle::cycle`].
+pub(super) fn shakes_down_surely(case: Case<'_>, name: &str, ends: [f64; 2]) -> Result<bool, PathError> {
+    let Ok(SecondWay { problem, places, complete: true }) = second_way(case, name, ends)? else { return Ok(false) };
+    let search = Search::new(&problem, &places);
+    Ok(search.most_reserve(&places).is_some_and(|slips| search.reserve(&slips, &places) > 0.0))
+}
+
 /// Up to where, from the first value towards the second, the theorem proves that the load shakes down from every start.
 ///
 /// # Errors
 /// See [`super::cycle::cycle`].
 pub fn static_limit(case: Case<'_>, name: &str, [from, to]: [f64; 2]) -> Result<(Option<f64>, Static), PathError> {
-    let Some(problem) = present(case) else { return Ok((None, Static::NotAsked)) };
-    if let Some(refusal) = refusal(&problem) {
-        return Ok((None, refusal));
-    }
-    let targets = [factors_at(case, name, from)?, factors_at(case, name, to)?];
-    let history = follow_factors(case, &Begin::Unloaded, &targets)?;
-    let Some(stage) = history.stages.get(1) else { return Ok((None, Static::Nothing)) };
-    let places: Vec<Place> = stage.moments.iter().map(|moment| Place::of(&problem, moment)).collect();
+    let (problem, places) = match second_way(case, name, [from, to])? {
+        Ok(SecondWay { problem, places, .. }) => (problem, places),
+        Err(nothing) => return Ok((None, nothing)),
+    };
     let search = Search::new(&problem, &places);
     let (Some((t, slips)), Some(first)) = (search.farthest(&places), search.most_reserve(&places[..1])) else {
         return Ok((None, Static::Nothing));
@@ -254,20 +295,15 @@ impl Search<'_> {
             if to.t <= from.t {
                 continue;
             }
-            let mut program = self.program();
+            let (mut program, one) = self.program();
             let share = program.variable(-1.0);
             program.at_most(vec![(share, 1.0)], 1.0);
             program.at_most(vec![(share, -1.0)], 0.0);
-            places[..k].iter().for_each(|place| self.demand(&mut program, place, None));
-            for (j, &(pair, joint)) in self.joints.iter().enumerate() {
-                let (Some(start), Some(end)) = (from.bounds[pair], to.bounds[pair]) else { continue };
-                for sign in [1.0, -1.0] {
-                    let mut terms = self.forces(j, sign);
-                    let rate = sign * (to.load[joint] - from.load[joint]) - (end - start);
-                    terms.push((share, rate / self.units.0));
-                    program.at_most(terms, (start - sign * from.load[joint]) / self.units.0);
-                }
-            }
+            places[..k].iter().for_each(|place| self.demand_at(&mut program, place, one, None));
+            let force = self.units.0;
+            let mix = |start: f64, end: f64| vec![(one, start / force), (share, (end - start) / force)];
+            let bound = |pair: usize, start: f64| mix(start, to.bounds[pair].unwrap_or(start));
+            self.demand(&mut program, from, bound, |joint| mix(from.load[joint], to.load[joint]));
             let Outcome::Optimum(found) = program.solve(SECONDS) else { break };
             let reached = found.x[share].clamp(0.0, 1.0);
             best = Some((from.t + reached * (to.t - from.t), self.slips(&found.x)));

@@ -1,17 +1,23 @@
-//! A path over a parameter, whatever that moves: loads or friction.
+//! A path over a parameter, whatever that moves: loads or friction; in space on Coulomb's cone.
 
 use super::change::Breakpoint;
 use super::end::PathEnd;
 use super::friction::{self, FrictionPath, is_friction};
 use super::load::{self, LoadPath, LoadReach};
+use super::on_cone::{self, ConePath};
 use super::start::PathError;
 use crate::solve::{Case, Solved};
+
+/// Friction without a target ends here.
+pub const FRICTION: f64 = 10.0;
 
 /// A path in one direction.
 #[derive(Clone, Debug)]
 pub enum Way {
     Load(Box<LoadPath>),
     Friction(Box<FrictionPath>),
+    /// In space: in steps.
+    OnCone(Box<ConePath>),
 }
 
 impl Way {
@@ -20,12 +26,23 @@ impl Way {
     /// # Errors
     /// See [`PathError`].
     pub fn follow(case: Case<'_>, solved: &Solved, name: &str, target: f64) -> Result<Way, PathError> {
-        if is_friction(case, name) {
-            let path = friction::trace(case, Some(solved), name, target)?;
-            return Ok(Way::Friction(Box::new(path)));
-        }
-        let reach = LoadReach { to: Some(target), through: false };
-        Ok(Way::Load(Box::new(load::trace(case, Some(solved), name, reach)?)))
+        Way::reach(case, solved, name, LoadReach { to: Some(target), through: false })
+    }
+
+    /// The same as far as it is to reach; friction up to [`FRICTION`] where nothing is said.
+    ///
+    /// # Errors
+    /// See [`PathError`].
+    pub fn reach(case: Case<'_>, solved: &Solved, name: &str, reach: LoadReach) -> Result<Way, PathError> {
+        let solved = Some(solved);
+        let in_space = case.prepared.system().is_some_and(|system| system.is_in_space());
+        let to = reach.to.unwrap_or(FRICTION);
+        Ok(match (is_friction(case, name), in_space) {
+            (true, false) => Way::Friction(Box::new(friction::trace(case, solved, name, to)?)),
+            (false, false) => Way::Load(Box::new(load::trace(case, solved, name, reach)?)),
+            (true, true) => Way::OnCone(Box::new(on_cone::trace_friction(case, solved, name, to)?)),
+            (false, true) => Way::OnCone(Box::new(on_cone::trace_load(case, solved, name, reach)?)),
+        })
     }
 
     /// Why it ends.
@@ -33,6 +50,7 @@ impl Way {
         match self {
             Way::Load(path) => &path.end,
             Way::Friction(path) => &path.end,
+            Way::OnCone(path) => &path.end,
         }
     }
 
@@ -41,6 +59,7 @@ impl Way {
         match self {
             Way::Load(path) => path.end_sentence(),
             Way::Friction(path) => path.end_sentence(),
+            Way::OnCone(path) => path.end_sentence(),
         }
     }
 
@@ -49,6 +68,7 @@ impl Way {
         match self {
             Way::Load(path) => &path.breakpoints,
             Way::Friction(path) => &path.breakpoints,
+            Way::OnCone(path) => &path.breakpoints,
         }
     }
 
@@ -57,6 +77,7 @@ impl Way {
         match self {
             Way::Load(path) => path.factors.windows(2).map(|ends| [ends[0], ends[1]]).collect(),
             Way::Friction(path) => path.schemes.iter().map(|scheme| [scheme.from, scheme.to]).collect(),
+            Way::OnCone(path) => path.stretches(),
         }
     }
 }

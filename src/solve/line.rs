@@ -94,7 +94,7 @@ impl Case<'_> {
                 if solved.is_balanced() { solved } else { self.solve_briefly()? }
             }
         };
-        Ok(solved.if_answer())
+        Ok(solved.if_answer(self.rules.cone))
     }
 
     /// As [`Case::solve_counted`] where [`Case::is_unique`], from the answer before it on this line where that leads there.
@@ -171,9 +171,10 @@ impl Solved {
         }
     }
 
-    /// Itself, or the word for how the run ended without an answer.
-    pub fn if_answer(self) -> Result<Solved, &'static str> {
-        if self.answer.is_answer() { Ok(self) } else { Err(self.answer.outcome.word()) }
+    /// Itself, or the word for how the run ended without an answer, in space without one on Coulomb's cone where that is asked
+    /// for.
+    pub fn if_answer(self, cone: bool) -> Result<Solved, &'static str> {
+        if self.stands(cone) { Ok(self) } else { Err(self.answer.outcome.word()) }
     }
 
     /// Whether nothing is left to check, or the forces balance at every node.

@@ -4,6 +4,7 @@ mod calibrate;
 #[path = "../common/mod.rs"]
 mod common;
 mod cycle;
+mod cycle_in_space;
 mod find;
 mod friction;
 mod hertz;
@@ -13,6 +14,7 @@ mod limit_in_space;
 mod load;
 mod load_amounts;
 mod map;
+mod map_in_space;
 mod prove;
 mod prove_in_space;
 mod random;

@@ -24,6 +24,7 @@ mod mortar;
 mod plates;
 mod press_fit;
 mod random_structures;
+mod repeated_histories_in_space;
 mod repeated_in_space;
 mod repeated_joint_histories;
 mod repeated_joints;

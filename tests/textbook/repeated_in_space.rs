@@ -18,7 +18,7 @@ fn vector(rotation: &Rotation3<f64>, x: f64, y: f64, z: f64) -> Value {
 }
 
 /// A cantilever along x whose tip is pressed by N, pushed aside by P and pulled by T; shoe and guides as told.
-fn guided(rotation: &Rotation3<f64>, contacts: &[(&str, [f64; 3], &str, &str)]) -> Case {
+pub(super) fn guided(rotation: &Rotation3<f64>, contacts: &[(&str, [f64; 3], &str, &str)]) -> Case {
     let v = |x: f64, y: f64, z: f64| vector(rotation, x, y, z);
     let load = |force: Value| json!([{ "point": { "at": "B", "force": force } }]);
     let contacts: Vec<Value> = (contacts.iter())
@@ -44,10 +44,10 @@ fn guided(rotation: &Rotation3<f64>, contacts: &[(&str, [f64; 3], &str, &str)]) 
     }))
 }
 
-const SIDES: [(&str, [f64; 3], &str, &str); 2] =
+pub(super) const SIDES: [(&str, [f64; 3], &str, &str); 2] =
     [("low", [0.0, 1.0, 0.0], "f", "g1"), ("up", [0.0, -1.0, 0.0], "f", "g2")];
 
-fn turned() -> Vec<Rotation3<f64>> {
+pub(super) fn turned() -> Vec<Rotation3<f64>> {
     let turn = |x: f64, y: f64, z: f64| Rotation3::new(Vector3::new(x, y, z));
     vec![Rotation3::identity(), turn(0.3, -0.7, 1.1), turn(-1.9, 0.2, 0.4)]
 }

@@ -209,21 +209,22 @@ impl ConeProblem<'_> {
     /// λ = R z + load with the magnitudes of its terms; of a condensed R √(R_ii R_kk) stands for |R_ik| in them.
     fn forces(&self, z: &DVector<f64>) -> Vec<Sum> {
         let root = |joint: usize| self.stiffness[(joint, joint)].max(0.0).sqrt();
-        let mut forces: Vec<Sum> = (self.load.iter().zip(self.load_terms))
-            .map(|(value, terms)| Sum { value: *value, magnitude: terms.max(value.abs()) })
-            .collect();
+        let mut values: Vec<f64> = self.load.iter().copied().collect();
+        let mut terms: Vec<f64> =
+            self.load.iter().zip(self.load_terms).map(|(load, terms)| terms.max(load.abs())).collect();
         let mut scaled = 0.0;
         for (k, moved) in z.iter().enumerate().filter(|(_, moved)| **moved != 0.0) {
             scaled += root(k) * moved.abs();
-            for (force, entry) in forces.iter_mut().zip(self.stiffness.column(k).iter()) {
-                force.value += entry * moved;
-                force.magnitude += if self.rounded { 0.0 } else { (entry * moved).abs() };
+            let column = self.stiffness.column(k);
+            values.iter_mut().zip(column.iter()).for_each(|(value, entry)| *value += entry * moved);
+            if !self.rounded {
+                terms.iter_mut().zip(column.iter()).for_each(|(terms, entry)| *terms += (entry * moved).abs());
             }
         }
         if self.rounded {
-            forces.iter_mut().enumerate().for_each(|(i, force)| force.magnitude += root(i) * scaled);
+            terms.iter_mut().enumerate().for_each(|(i, terms)| *terms += root(i) * scaled);
         }
-        forces
+        values.into_iter().zip(terms).map(|(value, magnitude)| Sum { value, magnitude }).collect()
     }
 
     /// What share of any force hangs on displacements `moved` of some joints: max over the rows of |R moved| / Σ |terms|.

@@ -168,7 +168,7 @@ impl Model<'_> {
         }
         let mut minima = least_nearby(&points, (ROUNDING * self.size()).powi(2));
         minima.sort_by(|a, b| a.1.total_cmp(&b.1));
-        Ok(Some(Along { minima, covered: route.covered(), ends: route.ends(), points }))
+        Ok(Some(Along { minima, covered: route.covered(), ends: route.notes(), points }))
     }
 }
 

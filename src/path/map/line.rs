@@ -2,7 +2,7 @@
 
 use crate::answer::record::{PairState, State};
 use crate::model::rules::Rules;
-use crate::path::route::{Route, Start};
+use crate::path::route::{Known, Route, Start};
 use crate::path::start::PathError;
 use crate::solve::error::QuestionError;
 use crate::solve::known_collapses::KnownCollapses;
@@ -21,8 +21,10 @@ const AGAIN: usize = 8;
 const CELLS: usize = 24;
 /// There a change is narrowed to this share of the range.
 const NARROW: f64 = 1e-11;
-/// Bounds met upwards and downwards that are nearer than this share of the range are one place.
+/// Bounds met upwards and downwards that are nearer than this share of the range are one place …
 const SAME: f64 = 1e-10;
+/// … where they are found in steps than this one, since a margin that is passed flatly fixes its place badly.
+const SAME_IN_STEPS: f64 = 1e-6;
 /// Parts shorter than this share of the range are rounding of the place where two others meet.
 const NOTHING: f64 = 1e-13;
 
@@ -82,15 +84,16 @@ fn farness(here: Option<&Scheme>, there: &[PairState]) -> (usize, usize) {
 }
 
 /// The parts of both ways over a line: where they differ there is more than one answer. Bounds nearer than `same` are
-/// one.
+/// one, and what differs over less than ten times that is no other answer.
 fn overlaid(upwards: &[Part], downwards: &[Part], same: f64) -> Vec<Part> {
     let mut parts = Vec::new();
     for a in upwards {
         let mut from = a.from;
         for b in downwards.iter().filter(|b| b.to > a.from + same && b.from < a.to - same) {
             let to = if b.to > a.to - same { a.to } else { b.to };
+            let is_wide = to - from.max(b.from) > 10.0 * same;
             let scheme = match (&a.scheme, &b.scheme) {
-                (Scheme::Pairs(a), Scheme::Pairs(b)) if a != b => Scheme::Several(a.clone(), b.clone()),
+                (Scheme::Pairs(a), Scheme::Pairs(b)) if a != b && is_wide => Scheme::Several(a.clone(), b.clone()),
                 (Scheme::NoAnswer, other) => other.clone(),
                 (scheme, _) => scheme.clone(),
             };
@@ -115,7 +118,7 @@ pub enum Others {
     FromAllAbove,
 }
 
-/// The lines of a map: `along` is followed exactly where that can be done, `across` stands still.
+/// The lines of a map: `along` is followed where that can be done, `across` stands still.
 pub struct Lines<'a> {
     /// The scenario made ready.
     pub case: Case<'a>,
@@ -137,31 +140,31 @@ impl<'a> Lines<'a> {
         Lines { case, along, range, across, others, known: KnownCollapses::default() }
     }
 
-    /// The line at a value of `across`, whether it was followed on exact paths, and the collapses known behind it: those of
-    /// `self` stay as they are, so that lines may be looked at in any order.
+    /// The line at a value of `across`, how well it is known, and the collapses known behind it: those of `self` stay as they
+    /// are, so that lines may be looked at in any order. There may be an answer at one of `hints`.
     ///
     /// # Errors
     /// A value that the scenario cannot take, an interruption.
-    pub fn line(&self, at: f64) -> Result<(Line, bool, KnownCollapses), PathError> {
+    pub fn line(&self, at: f64, hints: &[f64]) -> Result<(Line, Known, KnownCollapses), PathError> {
         let there = self.case.at(self.across, at)?;
         let step = StopOnly(self.case.watch);
         let own = Lines { known: self.known.clone(), ..*self };
-        let (parts, exact) = own.over(there.case(self.case).watched(&step))?;
-        Ok((Line { at, parts }, exact, own.known))
+        let (parts, known) = own.over(there.case(self.case).watched(&step), hints)?;
+        Ok((Line { at, parts }, known, own.known))
     }
 
-    /// The parts of a line on which this case stands still, and whether they were followed on exact paths.
+    /// The parts of a line on which this case stands still, and how well they are known.
     ///
     /// # Errors
     /// As [`Lines::line`].
-    pub fn over(&self, case: Case<'_>) -> Result<(Vec<Part>, bool), PathError> {
+    pub fn over(&self, case: Case<'_>, hints: &[f64]) -> Result<(Vec<Part>, Known), PathError> {
         let any: Start<'_> = &|case: Case<'_>| case.look_for_pairs(&self.known);
         let mut upwards = Vec::new();
-        let exact = self.fill(case, (self.range, false), (AGAIN, any), &mut upwards)?;
+        let known = self.fill(case, (self.range, false), (AGAIN, any, hints), &mut upwards)?;
         let mut parts = self.joined(upwards);
         // Lines over cells are answers of their own and do not depend on the end they start from.
-        if !exact || self.others == Others::None {
-            return Ok((parts, exact));
+        if known == Known::AtPlaces || self.others == Others::None {
+            return Ok((parts, known));
         }
         let last = parts.last().map(|part| part.scheme.clone());
         let others = match self.others {
@@ -170,13 +173,14 @@ impl<'a> Lines<'a> {
         };
         if others.is_empty() && last == Some(Scheme::NoAnswer) {
             // The way down would begin at the lower end, too.
-            return Ok((parts, exact));
+            return Ok((parts, known));
         }
         let mut from = |start: Start<'_>| -> Result<(), PathError> {
             let mut downwards = Vec::new();
-            self.fill(case, (self.range, true), (AGAIN, start), &mut downwards)?;
+            self.fill(case, (self.range, true), (AGAIN, start, hints), &mut downwards)?;
             let downwards = self.joined(downwards);
-            parts = self.joined(overlaid(&parts, &downwards, SAME * self.length()));
+            let same = if known == Known::Exactly { SAME } else { SAME_IN_STEPS };
+            parts = self.joined(overlaid(&parts, &downwards, same * self.length()));
             Ok(())
         };
         if others.is_empty() {
@@ -185,7 +189,7 @@ impl<'a> Lines<'a> {
         for other in others {
             from(&|_| Ok(Ok(other.clone())))?;
         }
-        Ok((parts, exact))
+        Ok((parts, known))
     }
 
     /// The answers at the upper end in another scheme than this.
@@ -208,21 +212,21 @@ impl<'a> Lines<'a> {
         self.range[1] - self.range[0]
     }
 
-    /// Fills a range with parts: along the exact path where there is an answer, and where that ends again from another
-    /// answer, if one is found.
+    /// Fills a range with parts: along the path where there is an answer, and where that ends again from another answer, if
+    /// one is found, so many times. How well they are known.
     fn fill(
         &self,
         case: Case<'_>,
         (range, upper): ([f64; 2], bool),
-        (again, start): (usize, Start<'_>),
+        (again, start, hints): (usize, Start<'_>, &[f64]),
         parts: &mut Vec<Part>,
-    ) -> Result<bool, PathError> {
+    ) -> Result<Known, PathError> {
         let route = match Route::from_start(case, self.along, range, upper, start) {
             Ok(Some(route)) if !route.stretches.is_empty() => route,
-            Ok(None) => return self.cells(case, range, parts).map(|()| false),
+            Ok(None) => return self.cells(case, range, parts).map(|()| Known::AtPlaces),
             // No answer, or one that stands at its very end.
             Ok(Some(_)) | Err(PathError::NoStart { .. }) => {
-                return self.between(case, (range, upper), again, parts).map(|()| true);
+                return self.between(case, (range, upper), (again, hints), parts);
             }
             Err(error) => return Err(error),
         };
@@ -232,13 +236,14 @@ impl<'a> Lines<'a> {
             parts.push(Part { from: stretch.from, to: stretch.to, scheme });
         }
         let [low, high] = route.covered();
-        if low > range[0] {
-            self.beyond(case, ([low, range[0]], upper), again, parts)?;
+        let mut known = route.known();
+        for (upwards, ends) in [(false, [low, range[0]]), (true, [high, range[1]])] {
+            if ends[0] != ends[1] {
+                let again = if route.ends_for_good(upwards) { 0 } else { again };
+                known = known.max(self.beyond(case, (ends, upper), again, parts)?);
+            }
         }
-        if high < range[1] {
-            self.beyond(case, ([high, range[1]], upper), again, parts)?;
-        }
-        Ok(true)
+        Ok(known)
     }
 
     fn has_answer(&self, case: Case<'_>, at: f64) -> Result<bool, PathError> {
@@ -249,23 +254,23 @@ impl<'a> Lines<'a> {
     fn between(
         &self,
         case: Case<'_>,
-        (range, upper): ([f64; 2], bool),
-        again: usize,
+        ([from, to], upper): ([f64; 2], bool),
+        (again, hints): (usize, &[f64]),
         parts: &mut Vec<Part>,
-    ) -> Result<(), PathError> {
-        let [from, to] = range;
+    ) -> Result<Known, PathError> {
         let any: Start<'_> = &|case: Case<'_>| case.look_for_pairs(&self.known);
         if again > 0 && to - from > BESIDE * self.length() {
-            for share in BETWEEN {
-                let at = from + share * (to - from);
+            let hints = hints.iter().copied().filter(|at| *at > from && *at < to);
+            for at in hints.chain(BETWEEN.map(|share| from + share * (to - from))) {
                 if self.has_answer(case, at)? {
-                    self.fill(case, ([from, at], upper), (again - 1, any), parts)?;
-                    return self.fill(case, ([at, to], upper), (again - 1, any), parts).map(drop);
+                    let below = self.fill(case, ([from, at], upper), (again - 1, any, &[]), parts)?;
+                    let above = self.fill(case, ([at, to], upper), (again - 1, any, &[]), parts)?;
+                    return Ok(below.max(above));
                 }
             }
         }
         parts.push(Part { from, to, scheme: Scheme::NoAnswer });
-        Ok(())
+        Ok(Known::Exactly)
     }
 
     /// From the end of a path to the end of the range: no answer, unless one is found at one of a few places.
@@ -275,7 +280,7 @@ impl<'a> Lines<'a> {
         ([from, to], upper): ([f64; 2], bool),
         again: usize,
         parts: &mut Vec<Part>,
-    ) -> Result<(), PathError> {
+    ) -> Result<Known, PathError> {
         let span = |a: f64, b: f64| [a.min(b), a.max(b)];
         let nearest = BESIDE * self.length();
         let any: Start<'_> = &|case: Case<'_>| case.look_for_pairs(&self.known);
@@ -288,18 +293,19 @@ impl<'a> Lines<'a> {
             }
             // Both ways from there; what is before it has none at its other end.
             let [low, high] = span(at, to);
+            let mut known = Known::Exactly;
             if low < high {
-                self.fill(case, ([low, high], upper), (again - 1, any), parts)?;
+                known = self.fill(case, ([low, high], upper), (again - 1, any, &[]), parts)?;
             }
             if index > 0 {
                 let beside = from + nearest * (to - from).signum();
-                return self.fill(case, (span(beside, at), upper), (again - 1, any), parts).map(drop);
+                known = known.max(self.fill(case, (span(beside, at), upper), (again - 1, any, &[]), parts)?);
             }
-            return Ok(());
+            return Ok(known);
         }
         let [from, to] = span(from, to);
         parts.push(Part { from, to, scheme: Scheme::NoAnswer });
-        Ok(())
+        Ok(Known::Exactly)
     }
 
     /// Without an exact path: answers of their own at some places, each change between two of them narrowed.

@@ -1,6 +1,6 @@
 //! The plane of two parameters cut into its regions of equal working scheme.
 //!
-//! Across the plane run *lines*: one parameter followed on its exact path, the other standing still. Lines that pass the
+//! Across the plane run *lines*: one parameter followed on its path, the other standing still. Lines that pass the
 //! same schemes in the same order make a *panel*; where the order changes is found by halving, to the last digits. The
 //! bounds of the parts of a panel are smooth curves (straight for two loads), whose areas Gauss's rule gives. Parts of
 //! neighbouring panels that touch and have one scheme make a *region*.
@@ -18,8 +18,8 @@ use self::panel::Cutter;
 use self::regions::regions;
 use super::envelope::Axis;
 use super::quantity::{Facts, Value};
-use super::route::Route;
-use super::start::{PathError, plane_system};
+use super::route::{IN_STEPS, Known, Route};
+use super::start::PathError;
 use crate::answer::record::{RayClass, State, Verdict};
 use crate::model::jet::Dependence;
 use crate::model::quantity::Quantity;
@@ -82,8 +82,8 @@ pub struct Map {
     pub region_of: Vec<Vec<usize>>,
     /// Index of the axis along the lines.
     pub along: usize,
-    /// Whether every bound lies on an exact path.
-    pub exact: bool,
+    /// How well its bounds are known.
+    pub known: Known,
     /// How other answers were looked for.
     pub others: Others,
     /// Whether all places where the order of the schemes changes were found; otherwise why not, and the number of lines by
@@ -127,17 +127,19 @@ impl Map {
 /// # Errors
 /// Axes that cannot be varied, an interruption before there is anything to show; see [`PathError`].
 pub fn map(case: Case<'_>, axes: [Axis; 2], quantity: Option<&Quantity>) -> Result<Map, PathError> {
-    plane_system(case.prepared, "map", "`sweep P A..B N Q C..D N` gives the answers on a grid of both")?;
+    if case.prepared.system().is_none() {
+        return Err(PathError::Plain("map"));
+    }
     let along = along(case, &axes)?;
     let across = &axes[1 - along];
     let others = others(case, &axes)?;
     let lines = Lines::new(case, (&axes[along].name, axes[along].range), &across.name, others);
     let mut cutter = Cutter::new(&lines, across.range);
     let panels = cutter.panels()?;
-    let (exact, left_out) = (cutter.exact, cutter.left_out);
+    let (known, left_out) = (cutter.known, cutter.left_out);
     let region_of = regions(&panels, axes.each_ref().map(|axis| axis.range), along);
     let mut map =
-        Map { axes, regions: Vec::new(), panels, region_of, along, exact, others, left_out, notes: Vec::new() };
+        Map { axes, regions: Vec::new(), panels, region_of, along, known, others, left_out, notes: Vec::new() };
     map.describe(case, quantity)?;
     map.say(case);
     Ok(map)
@@ -161,8 +163,16 @@ fn along(case: Case<'_>, axes: &[Axis; 2]) -> Result<usize, PathError> {
     Ok(best.0)
 }
 
+/// Whether pairs slip in a plane of directions: all answers could be told of a polygon only.
+fn is_in_space(case: Case<'_>) -> bool {
+    case.prepared.system().is_some_and(|system| system.is_in_space())
+}
+
 /// How other answers are to be looked for.
 fn others(case: Case<'_>, axes: &[Axis; 2]) -> Result<Others, PathError> {
+    if is_in_space(case) {
+        return Ok(Others::FromAbove);
+    }
     let pairs = case.prepared.system().map_or(0, |system| system.pairs.len());
     let otherwise = if pairs <= ENUMERATED_ENDS { Others::FromAllAbove } else { Others::FromAbove };
     let corner =
@@ -217,7 +227,7 @@ impl Map {
             .system()
             .map(|system| system.pairs.iter().map(|pair| pair.id.clone()).collect())
             .unwrap_or_default();
-        let enumerated = ids.len() <= ENUMERATED_PAIRS && count <= ENUMERATED_REGIONS;
+        let enumerated = ids.len() <= ENUMERATED_PAIRS && count <= ENUMERATED_REGIONS && !is_in_space(case);
         for region in 0..count {
             case.watch.progress(&format!("region {} of {count}", region + 1), region as f64 / count as f64);
             let mut area = 0.0;
@@ -310,7 +320,10 @@ impl Map {
                 self.axes[self.along].name
             ));
         }
-        if !self.exact {
+        if self.known == Known::InSteps {
+            self.notes.push(format!("lines along {} are {IN_STEPS}", self.axes[self.along].name));
+        }
+        if self.known == Known::AtPlaces {
             self.notes.push(format!(
                 "no exact path leads over {}: the places on its lines were solved one by one, and each change between \
                  two of them was narrowed by halving; what comes and goes between two of them is not seen",
@@ -318,6 +331,7 @@ impl Map {
             ));
         }
         let counted = match pairs > ENUMERATED_PAIRS || self.regions.len() > ENUMERATED_REGIONS {
+            _ if is_in_space(case) => "; in space they are not counted".to_owned(),
             true => format!(
                 "; at the marked places all of them are counted for up to {ENUMERATED_PAIRS} pairs and {ENUMERATED_REGIONS} \
                  regions only"
@@ -329,11 +343,11 @@ impl Map {
                 "nowhere is there more than one state of forces: that is proved for all of this friction, whatever the loads"
                     .to_owned()
             }
-            Others::FromAllAbove if self.exact => format!(
+            Others::FromAllAbove if self.known == Known::Exactly => format!(
                 "other answers were looked for by following each line from its lower end and from all answers at its upper \
                  one: of those that reach neither end some may be missing{counted}"
             ),
-            _ if self.exact => format!(
+            _ if self.known != Known::AtPlaces => format!(
                 "other answers were looked for only by following each line from both ends: others may be there{counted}"
             ),
             _ => format!("other answers were not looked for along the lines{counted}"),

@@ -1,20 +1,26 @@
 //! Strips of the map in which every line passes the same schemes in the same order, and the areas of their parts.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use rayon::prelude::*;
 
-use super::line::{Line, Lines};
+use super::line::{Line, Lines, Scheme};
+use crate::path::route::Known;
 use crate::path::start::PathError;
 use crate::solve::known_collapses::KnownCollapses;
 use crate::text::words::short;
 
+/// A line without an answer at its ends is looked at in so many places where its neighbours have one.
+const HINTS: usize = 4;
 /// Strips looked at first.
 const STRIPS: usize = 16;
 /// Two lines nearer than this share of the range are one place: there the sequence changes.
 const ONE_PLACE: f64 = 1e-12;
-/// A place between two lines is a straight join up to this share of the range along them.
-const STRAIGHT: f64 = 1e-12;
-/// The area of a strip, by two rules, agrees to this share of the whole map; otherwise it is halved.
+/// A place between two lines is a straight join up to this share of the range along them, and the area of a strip, by two
+/// rules, agrees to this share of the whole map; otherwise it is halved.
 const AGREED: f64 = 1e-12;
+/// The same where bounds are narrowed to a few 1e-12 of the range, not found on exact paths.
+const AGREED_IN_STEPS: f64 = 1e-10;
 /// A strip is halved this often at most.
 const HALVINGS: usize = 8;
 /// Sequences within sequences are looked for this deep at most.
@@ -116,6 +122,18 @@ fn vanishing(places: &[(f64, f64)]) -> Option<(f64, f64)> {
     Some(if beyond { (curved, 2.0 * (curved - straight).abs()) } else { (straight, 0.1 * (straight - a).abs()) })
 }
 
+/// Where the nearest lines on both sides have answers.
+fn hints(seen: &[Line], at: f64) -> Vec<f64> {
+    let answered = |line: &&Line| line.parts.iter().any(|part| part.scheme != Scheme::NoAnswer);
+    let nearest = |sign: f64| {
+        let side = seen.iter().filter(|line| (line.at - at) * sign > 0.0).filter(answered);
+        side.min_by(|a, b| (a.at - at).abs().total_cmp(&(b.at - at).abs()))
+    };
+    let parts = [-1.0, 1.0].into_iter().filter_map(nearest).flat_map(|line| &line.parts);
+    let parts = parts.filter(|part| part.scheme != Scheme::NoAnswer);
+    parts.map(|part| 0.5 * (part.from + part.to)).take(HINTS).collect()
+}
+
 /// Cuts the map into strips.
 pub struct Cutter<'a> {
     lines: &'a Lines<'a>,
@@ -126,8 +144,8 @@ pub struct Cutter<'a> {
     nested: usize,
     /// Shares of the whole work between which the present pass over the range lies.
     pass: [f64; 2],
-    /// Whether every line was exact.
-    pub exact: bool,
+    /// How well all lines are known.
+    pub known: Known,
     /// Why the map was given up before its end, and how many lines it has.
     pub left_out: Option<(LeftOut, usize)>,
 }
@@ -144,7 +162,7 @@ pub enum LeftOut {
 impl<'a> Cutter<'a> {
     /// `range` of the parameter across.
     pub fn new(lines: &'a Lines<'a>, range: [f64; 2]) -> Cutter<'a> {
-        Cutter { lines, range, seen: Vec::new(), nested: 0, pass: [0.0, 0.1], exact: true, left_out: None }
+        Cutter { lines, range, seen: Vec::new(), nested: 0, pass: [0.0, 0.1], known: Known::Exactly, left_out: None }
     }
 
     /// The lines at these values.
@@ -161,15 +179,15 @@ impl<'a> Cutter<'a> {
             }
             let done = begun + (at - low) / (high - low) * (ended - begun);
             lines.case.watch.progress(&format!("{} = {}", lines.across, short(*at)), done);
-            lines.line(*at)
+            lines.line(*at, &hints(&self.seen, *at))
         };
         // Those before one that was stopped are kept.
-        let found: Vec<Result<(Line, bool, KnownCollapses), PathError>> = places.par_iter().map(look).collect();
+        let found: Vec<Result<(Line, Known, KnownCollapses), PathError>> = places.par_iter().map(look).collect();
         for found in found {
-            let (line, exact, known) = found?;
-            self.exact &= exact;
+            let (line, known, collapses) = found?;
+            self.known = self.known.max(known);
             // The last one's at the end, on however many threads.
-            lines.known.become_as(&known);
+            lines.known.become_as(&collapses);
             self.seen.push(line);
         }
         Ok(self.seen[first..].to_vec())
@@ -265,25 +283,40 @@ impl<'a> Cutter<'a> {
         Ok(())
     }
 
+    /// Places on [0, 1] with the weights of Kronrod's rule and of Gauss's. Bounds that come from steps are round: at the ends
+    /// of a strip their distance is like a root, which x = sin²(π s/2) makes smooth.
+    fn nodes(&self) -> Vec<(f64, f64, f64)> {
+        let node = |k: usize| {
+            let (half, sign) = if k < 8 { (k, -1.0) } else { (14 - k, 1.0) };
+            let gauss = if half % 2 == 1 { GAUSS[half / 2] } else { 0.0 };
+            let (x, kronrod, gauss) = (0.5 * (1.0 + sign * NODES[half]), 0.5 * KRONROD[half], 0.5 * gauss);
+            if self.known == Known::Exactly {
+                return (x, kronrod, gauss);
+            }
+            let (angle, turn) = (PI * x, FRAC_PI_2 * (PI * x).sin());
+            (0.5 * (1.0 - angle.cos()), turn * kronrod, turn * gauss)
+        };
+        (0..15).map(node).collect()
+    }
+
+    fn agreed(&self) -> f64 {
+        if self.known == Known::Exactly { AGREED } else { AGREED_IN_STEPS }
+    }
+
     /// The areas between two lines of one sequence; cut again where a third shows that there is more between them.
     fn measure(&mut self, start: Line, end: Line, depth: usize, panels: &mut Vec<Panel>) -> Result<(), PathError> {
         let width = end.at - start.at;
         let along = self.lines.range[1] - self.lines.range[0];
-        let nodes: Vec<(f64, f64, f64)> = (0..15)
-            .map(|k| {
-                let (half, sign) = if k < 8 { (k, -1.0) } else { (14 - k, 1.0) };
-                let gauss = if half % 2 == 1 { GAUSS[half / 2] } else { 0.0 };
-                (0.5 * (1.0 + sign * NODES[half]), 0.5 * KRONROD[half], 0.5 * gauss)
-            })
-            .collect();
+        let nodes = self.nodes();
         // Straight bounds need three places: the middle and one beside it.
         let place = |k: usize| start.at + nodes[k].0 * width;
         let inner = self.at(&[place(7), place(4)])?;
+        let agreed = self.agreed();
         let straight = |line: &Line| {
             let share = (line.at - start.at) / width;
             line.same_sequence(&start)
                 && (start.bounds().zip(end.bounds()).zip(line.bounds()))
-                    .all(|((a, b), found)| (a + share * (b - a) - found).abs() <= STRAIGHT * along)
+                    .all(|((a, b), found)| (a + share * (b - a) - found).abs() <= agreed * along)
         };
         let lengths = |line: &Line| line.parts.iter().map(|part| part.to - part.from).collect::<Vec<f64>>();
         if inner.iter().all(straight) {
@@ -304,9 +337,8 @@ impl<'a> Cutter<'a> {
         };
         let kronrod: Vec<f64> = (0..start.parts.len()).map(|part| sum(part, &|node| node.1)).collect();
         let whole = along * (self.range[1] - self.range[0]);
-        let agreed =
-            kronrod.iter().enumerate().all(|(part, area)| (area - sum(part, &|node| node.2)).abs() <= AGREED * whole);
-        if !agreed && depth < HALVINGS {
+        let is_near = |(part, area): (usize, &f64)| (area - sum(part, &|node| node.2)).abs() <= agreed * whole;
+        if !kronrod.iter().enumerate().all(is_near) && depth < HALVINGS {
             self.measure(start, middle.clone(), depth + 1, panels)?;
             return self.measure(middle, end, depth + 1, panels);
         }

@@ -10,7 +10,7 @@ use crate::path::envelope::Axis;
 use crate::path::map::{LeftOut, Lines, Others, Scheme, map};
 use crate::path::profile::{Piece, Shape, number, profile, zero};
 use crate::path::quantity::Value;
-use crate::path::route::Route;
+use crate::path::route::{Known, Route};
 use crate::path::start::PathError;
 use crate::solve::Case;
 use crate::text::number::short;
@@ -60,8 +60,8 @@ pub fn of_one(case: Case<'_>, variable: &Variable, quantities: &[Quantity]) -> R
         return Ok(None);
     }
     let lines = Lines::new(case, (name, range), name, Others::FromAbove);
-    let (parts, exact) = lines.over(case)?;
-    if !exact {
+    let (parts, known) = lines.over(case, &[])?;
+    if known != Known::Exactly {
         return Ok(None);
     }
     let length = range[1] - range[0];
@@ -143,7 +143,7 @@ pub fn of_two(case: Case<'_>, variables: [&Variable; 2]) -> Result<Option<Exact>
     match found.left_out {
         Some((LeftOut::Stopped, _)) => return Err(PathError::Interrupted),
         Some((LeftOut::Intricate, _)) => return Ok(None),
-        None if !found.exact => return Ok(None),
+        None if found.known != Known::Exactly => return Ok(None),
         None => {}
     }
     let (mut collapse, mut undecided) = (0.0, 0.0);

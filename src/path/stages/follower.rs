@@ -90,9 +90,7 @@ pub(super) trait Follower<'a> {
         let system = &*self.place().laws.problem.system;
         let mut over_joints = DVector::zeros(system.joint_count());
         for (pair, slip) in system.pairs.iter().zip(slips) {
-            if let Some(joint) = pair.plane_tangential() {
-                over_joints[joint] = *slip;
-            }
+            pair.tangential.clone().zip(slip).for_each(|(joint, slip)| over_joints[joint] = *slip);
         }
         match self.stand_behind(factors, over_joints)? {
             None => Ok(()),

@@ -68,9 +68,9 @@ pub fn follow(case: Case<'_>) -> Result<History, PathError> {
 pub enum Begin {
     /// At the unloaded structure.
     Unloaded,
-    /// Under the first factors, with slips of the pairs that something before has left behind: the first stage is the
-    /// standing there.
-    Slips(Vec<f64>),
+    /// Under the first factors, with slips of the pairs, along t or along t1 and t2, that something before has left behind: the
+    /// first stage is the standing there.
+    Slips(Vec<[f64; 2]>),
 }
 
 /// Follows a structure through the given factors of all load cases.

@@ -27,7 +27,8 @@ use crate::view;
 /// LOAD is a load case or a parameter that factors of load cases depend on. `plot path` draws the loops.
 ///
 /// `… from SLIPS` begins at A with slips that something before has left behind: `PAIR=SLIP …` (others 0; a name of an
-/// edge contact or `*` stands for all its pairs), or one number for each pair. Where these do not stand, pairs slip back at
+/// edge contact or `*` stands for all its pairs), or one number for each pair; in space two numbers, along t1 and t2:
+/// `PAIR=SLIP,SLIP`. Where these do not stand, pairs slip back at
 /// once. `… from all` begins without slips and with the largest and least slip of each pair at which the structure stands,
 /// to see whether the start decides. Where no slip changes a contact force, Melan's theorem may prove shakedown from
 /// every start; it is asked, and said not to hold elsewhere.
@@ -232,14 +233,13 @@ impl Session {
         Ok(())
     }
 
-    /// What stands behind `from`: `all`, one number for each pair, or `PAIR=SLIP …`.
+    /// What stands behind `from`: `all`, the numbers of each pair, or `PAIR=SLIP …`.
     fn begin(&self, words: &[String]) -> Result<From, CommandError> {
-        let text = words.join(" ").replace(['(', ')', ','], " ");
+        let text = words.join(" ").replace(['(', ')', ','], " ").replace("= ", "=");
         let words: Vec<&str> = text.split_whitespace().collect();
         if words == ["all"] {
             return Ok(From::All);
         }
-        let number = |word: &str| word.parse::<f64>().ok().filter(|value| value.is_finite());
         let pairs = self.names().pairs;
         let named = words.iter().any(|word| word.contains('='));
         let form = "expected `from all`, `from PAIR=SLIP …` or `from` and a slip for each pair";
@@ -247,7 +247,7 @@ impl Session {
             return refused(format!("cycle: nothing stands behind `from`; {form}"));
         }
         if let (["all", other, ..], _) | ([other, ..], false) = (&words[..], named)
-            && number(other).is_none()
+            && finite(other).is_none()
         {
             return refused(match words[0] {
                 "all" => format!("cycle: `from all` chooses the slips itself; `{other}` is one too many"),
@@ -255,33 +255,20 @@ impl Session {
                 _ => format!("cycle: `{other}` is not a slip; {form}"),
             });
         }
-        if !named {
-            let slips: Vec<f64> = words.iter().filter_map(|word| number(word)).collect();
-            if slips.len() != words.len() || slips.len() != pairs.len() {
-                return refused(format!(
-                    "cycle: expected {} slips behind `from`, one for each pair, found {}; `from PAIR=SLIP …` names some",
-                    pairs.len(),
-                    words.join(" ")
-                ));
-            }
-            return Ok(From::Begin(Begin::Slips(slips)));
+        let parts = self.now.scenario.source.dimension().slips();
+        if named {
+            return named_slips(&words, &pairs, parts).map(|slips| From::Begin(Begin::Slips(slips)));
         }
-        let mut slips: Vec<Option<f64>> = vec![None; pairs.len()];
-        for word in words {
-            let Some((pattern, slip)) = word.split_once('=').and_then(|(id, slip)| Some((id, number(slip)?))) else {
-                return refused(format!("cycle: `{word}` is not a slip; expected PAIR=SLIP, e.g. `c1=0.001`"));
-            };
-            let fitting = pairs.iter().enumerate().filter(|(_, id)| fits(pattern, id));
-            let fitting: Vec<usize> = fitting.map(|(index, _)| index).collect();
-            if fitting.is_empty() {
-                return refused(no_such("pair", pattern, pairs.iter().copied()));
-            }
-            if let Some(twice) = fitting.iter().find(|index| slips[**index].is_some()) {
-                return refused(format!("cycle: the slip of {} is given twice", pairs[*twice]));
-            }
-            fitting.into_iter().for_each(|index| slips[index] = Some(slip));
+        let numbers: Vec<f64> = words.iter().filter_map(|word| finite(word)).collect();
+        if numbers.len() != words.len() || numbers.len() != parts * pairs.len() {
+            let of_each = if parts == 1 { "one for each pair" } else { "two for each pair, along t1 and t2" };
+            return refused(format!(
+                "cycle: expected {} slips behind `from`, {of_each}, found {}; `from PAIR=SLIP …` names some",
+                parts * pairs.len(),
+                words.join(" ")
+            ));
         }
-        Ok(From::Begin(Begin::Slips(slips.into_iter().map(Option::unwrap_or_default).collect())))
+        Ok(From::Begin(Begin::Slips(numbers.chunks(parts).map(slip_of).collect())))
     }
 
     /// `limit cycle LOAD [A..B]`: from A, 0 if it is left out; B is looked at first.
@@ -316,4 +303,42 @@ impl Session {
         self.keep_result(&report);
         Ok(())
     }
+}
+
+fn finite(word: &str) -> Option<f64> {
+    word.parse::<f64>().ok().filter(|value| value.is_finite())
+}
+
+/// Its parts along t, or along t1 and t2.
+fn slip_of(parts: &[f64]) -> [f64; 2] {
+    std::array::from_fn(|part| parts.get(part).copied().unwrap_or_default())
+}
+
+/// The slips of all pairs from `PAIR=SLIP …`, each of so many numbers; 0 of those that are not named.
+fn named_slips(words: &[&str], pairs: &[&str], parts: usize) -> Result<Vec<[f64; 2]>, CommandError> {
+    let mut slips: Vec<Option<[f64; 2]>> = vec![None; pairs.len()];
+    let mut words = words.iter().copied().peekable();
+    while let Some(word) = words.next() {
+        let Some((pattern, first)) = word.split_once('=').and_then(|(id, slip)| Some((id, finite(slip)?))) else {
+            return refused(format!("cycle: `{word}` is not a slip; expected PAIR=SLIP, e.g. `c1=0.001`"));
+        };
+        let mut numbers = vec![first];
+        let more = std::iter::from_fn(|| words.next_if(|word| finite(word).is_some()));
+        numbers.extend(more.take(parts - 1).filter_map(finite));
+        if numbers.len() != parts {
+            return refused(format!(
+                "cycle: how far has {pattern} slipped along t1 and along t2? e.g. `{pattern}=0.001,-0.002`"
+            ));
+        }
+        let fitting: Vec<usize> =
+            pairs.iter().enumerate().filter(|(_, id)| fits(pattern, id)).map(|(index, _)| index).collect();
+        if fitting.is_empty() {
+            return refused(no_such("pair", pattern, pairs.iter().copied()));
+        }
+        if let Some(twice) = fitting.iter().find(|index| slips[**index].is_some()) {
+            return refused(format!("cycle: the slip of {} is given twice", pairs[*twice]));
+        }
+        fitting.into_iter().for_each(|index| slips[index] = Some(slip_of(&numbers)));
+    }
+    Ok(slips.into_iter().map(Option::unwrap_or_default).collect())
 }

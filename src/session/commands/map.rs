@@ -11,6 +11,7 @@ use crate::model::quantity::Quantity;
 use crate::model::scenario::Scenario;
 use crate::path::envelope::Axis;
 use crate::path::map::{self, map};
+use crate::path::route::Known;
 use crate::session::error::refused;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
@@ -23,7 +24,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// Cut the plane of two parameters into its regions of equal working scheme
 ///
 /// `map P [A..B] Q [C..D] [of QUANTITY]`: parameters or load cases, horizontal and vertical; the ranges are those of
-/// the sliders where they are left out. One of the two is followed on its exact path while the other stands still;
+/// the sliders where they are left out. One of the two is followed on its path, exact in the plane, while the other stands still;
 /// where the order of the schemes changes is found to the last digits. Each region gets its area, and at a place inside
 /// its states, or the collapse with its motion and what is proved of it, and the quantity. In small problems other
 /// answers are looked for there; their regions are hatched. Ctrl-C draws what is known by then. `export map FILE.svg|.json` writes the last map; in the full
@@ -149,7 +150,7 @@ impl Session {
             "axes": map.axes.iter().map(axis).collect::<Vec<_>>(),
             "quantity": quantity.as_ref().map(ToString::to_string),
             "regions": regions.collect::<Vec<_>>(),
-            "exact": map.exact,
+            "exact": map.known == Known::Exactly,
             "complete": map.left_out.is_none(),
             "notes": map.notes,
         })

@@ -10,10 +10,11 @@ use serde::Serialize;
 use crate::answer::record::State;
 use crate::model::quantity::Quantity;
 use crate::path::change::{Breakpoint, Change};
-use crate::path::friction::{self, FrictionPath, Interval, is_friction};
-use crate::path::load::{self, LoadPath, LoadReach};
-use crate::path::on_cone::{self, ConePath};
+use crate::path::friction::{FrictionPath, Interval, is_friction};
+use crate::path::load::{LoadPath, LoadReach};
+use crate::path::on_cone::ConePath;
 use crate::path::record::PathRecord;
+use crate::path::way::{FRICTION, Way};
 use crate::session::commands::along::Along;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
@@ -22,9 +23,6 @@ use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::solve::Prepared;
 use crate::view;
 use crate::view::style::Style;
-
-/// Friction without a target and without a slider ends here.
-const FRICTION: f64 = 10.0;
 
 /// Follow the answer over a load or a friction coefficient: every breakpoint, exactly
 ///
@@ -101,55 +99,39 @@ impl Session {
         let ground = self.ground(io.watch)?;
         let units = self.now.scenario.units.clone();
         let geometry = Arc::clone(&ground.prepared);
-        let what = name.to_owned();
-        let in_space = geometry.system().is_some_and(|system| system.is_in_space());
-        if is_friction(ground.case(io.watch), name) {
-            let to = to.unwrap_or_else(|| {
+        let to = match is_friction(ground.case(io.watch), name) {
+            true => Some(to.unwrap_or_else(|| {
                 let slider = self.now.scenario.parameters.get(name).and_then(|p| p.max);
                 let present = self.now.values.get(name).copied().unwrap_or_default();
                 slider.filter(|max| *max > present).unwrap_or(FRICTION.max(2.0 * present))
-            });
-            if in_space {
-                let path = worker::run(io.watch, move |watch| {
-                    on_cone::trace_friction(ground.case(watch), Some(&ground.solved), &what, to)
-                })??;
-                return self.show_on_cone(&path, &geometry, &quantities, io);
-            }
-            let path = worker::run(io.watch, move |watch| {
-                friction::trace(ground.case(watch), Some(&ground.solved), &what, to)
-            })??;
-            let record = PathRecord::of_friction(&path);
-            return self.show_way(record, &FrictionReport::of(&path), (&geometry, &quantities), io, |out, style| {
-                view::path::write_friction(out, &path, &units, style)
-            });
-        }
-        if in_space {
-            let path = worker::run(io.watch, move |watch| {
-                on_cone::trace_load(ground.case(watch), Some(&ground.solved), &what, LoadReach { to, through })
-            })??;
-            return self.show_on_cone(&path, &geometry, &quantities, io);
-        }
-        let path = worker::run(io.watch, move |watch| {
-            load::trace(ground.case(watch), Some(&ground.solved), &what, LoadReach { to, through })
+            })),
+            false => to,
+        };
+        let what = name.to_owned();
+        let way = worker::run(io.watch, move |watch| {
+            Way::reach(ground.case(watch), &ground.solved, &what, LoadReach { to, through })
         })??;
-        let record = PathRecord::of_load(&path, &case_names(&geometry));
-        self.show_way(record, &LoadReport::of(&path), (&geometry, &quantities), io, |out, style| {
-            view::path::write_load(out, &path, &units, style)
-        })
-    }
-
-    fn show_on_cone(
-        &mut self,
-        path: &ConePath,
-        geometry: &Prepared,
-        quantities: &[Quantity],
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
-        let units = self.now.scenario.units.clone();
-        let record = PathRecord::of_cone(path, &case_names(geometry));
-        self.show_way(record, &ConeReport::of(path), (geometry, quantities), io, |out, style| {
-            view::path::write_on_cone(out, path, &units, style)
-        })
+        let shown = (&*geometry, &quantities[..]);
+        match &way {
+            Way::Friction(path) => {
+                let record = PathRecord::of_friction(path);
+                self.show_way(record, &FrictionReport::of(path), shown, io, |out, style| {
+                    view::path::write_friction(out, path, &units, style)
+                })
+            }
+            Way::Load(path) => {
+                let record = PathRecord::of_load(path, &case_names(&geometry));
+                self.show_way(record, &LoadReport::of(path), shown, io, |out, style| {
+                    view::path::write_load(out, path, &units, style)
+                })
+            }
+            Way::OnCone(path) => {
+                let record = PathRecord::of_cone(path, &case_names(&geometry));
+                self.show_way(record, &ConeReport::of(path), shown, io, |out, style| {
+                    view::path::write_on_cone(out, path, &units, style)
+                })
+            }
+        }
     }
 
     /// Shows a path with the quantities along it, and keeps it.
@@ -210,15 +192,15 @@ impl<'a> ConeReport<'a> {
     fn of(path: &'a ConePath) -> Self {
         let name = path.name.as_str();
         let turn = |at: &'a Breakpoint| ConeTurn {
-            factor: (!path.over_friction).then_some(at.value),
+            factor: (!path.over.is_friction()).then_some(at.value),
             value: at.value,
             changes: &at.changes,
             jump: at.jump,
             sentence: &at.sentence,
         };
         ConeReport {
-            load: (!path.over_friction).then_some(name),
-            parameter: path.over_friction.then_some(name),
+            load: (!path.over.is_friction()).then_some(name),
+            parameter: path.over.is_friction().then_some(name),
             start: path.start,
             from_zero: path.from_zero,
             breakpoints: path.breakpoints.iter().map(turn).collect(),

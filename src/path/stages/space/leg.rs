@@ -7,9 +7,10 @@
 
 use nalgebra::DVector;
 
+use crate::answer::pairs::pairs_in_space;
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
-use crate::path::cone_step::{Scheme, Step, Stepper};
+use crate::path::cone_step::{Scheme, Step, Stepper, margins};
 use crate::path::stages::course::Course;
 use crate::path::stages::integrals::Integrals;
 use crate::path::start::PathError;
@@ -189,13 +190,36 @@ pub(super) fn change_within(
     digits: f64,
 ) -> Result<f64, PathError> {
     let (mut low, mut high) = (0.0, h);
+    // The last two places in the scheme with what was left of it there, where it was thought to end, and where to look next.
+    let mut known: [Option<(f64, Vec<f64>)>; 2] = [None, None];
+    let (mut thought, mut next): (Option<f64>, Vec<f64>) = (None, Vec::new());
     while high - low > digits {
-        let middle = 0.5 * (low + high);
-        let guess = begin.z + begin.rate * middle;
-        let found = stepper.near(problem(begin.t + middle), begin.z, &guess)?;
-        if found.is_some_and(|found| found.scheme == *begin.scheme) { low = middle } else { high = middle }
+        let inside = next.pop().filter(|at| *at > low && *at < high);
+        let at = inside.unwrap_or(0.5 * (low + high));
+        let there = problem(begin.t + at);
+        let found = stepper.near(there.clone(), begin.z, &(begin.z + begin.rate * at))?;
+        let Some(found) = found.filter(|found| found.scheme == *begin.scheme) else {
+            high = at;
+            continue;
+        };
+        low = at;
+        let pairs = pairs_in_space(&there, &found.increments);
+        let left = pairs.iter().flat_map(margins).map(|margin| margin.unwrap_or(f64::INFINITY));
+        known = [known[1].take(), Some((at, left.collect()))];
+        if let (true, Some(end)) = (next.is_empty(), end_of(&known)) {
+            let unsure = thought.map_or(0.01 * (high - low), |before| (end - before).abs());
+            let unsure = unsure.min(0.25 * (high - low)).max(0.25 * digits);
+            (thought, next) = (Some(end), vec![end + unsure, end - unsure]);
+        }
     }
     Ok(low)
+}
+
+/// Where the first margin runs out, straight on from two places; `None` where none falls.
+fn end_of(known: &[Option<(f64, Vec<f64>)>; 2]) -> Option<f64> {
+    let [Some((a, before)), Some((b, now))] = known else { return None };
+    let falling = before.iter().zip(now).filter(|(before, now)| before.is_finite() && now < before);
+    falling.map(|(before, now)| b + now * (b - a) / (before - now)).min_by(f64::total_cmp)
 }
 
 /// A course as the problem at each of its places.

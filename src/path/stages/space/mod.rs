@@ -89,12 +89,6 @@ pub(super) fn follow<'a>(
                    `set cone on` (`solver.cone`: true) first";
         return Err(PathError::Missing(why.to_owned()));
     }
-    if let Some(refusal) = laws.problem.system.dependence_refusal("stages") {
-        return Err(PathError::Missing(refusal));
-    }
-    if matches!(begin, Begin::Slips(_)) {
-        return Err(PathError::Missing("a history in space begins at the unloaded structure".to_owned()));
-    }
     let stepper = Stepper::new(rules.facets, watch);
     let (joints, pairs) = (laws.problem.system.joint_count(), laws.problem.system.pair_count());
     let mut z = DVector::zeros(joints);
@@ -136,9 +130,9 @@ impl SpaceWalk<'_> {
     }
 
     /// Stands at the end of a step.
-    fn stand(&mut self, step: Step, way: Scheme, integrals: Integrals, (factors, gaps): (Vec<f64>, Vec<f64>)) {
+    fn stand(&mut self, step: Step, mut way: Scheme, integrals: Integrals, (factors, gaps): (Vec<f64>, Vec<f64>)) {
         let Step { z, increments, .. } = step;
-        (self.place.factors, self.place.gaps, self.place.way) = (factors, gaps, way);
+        (self.place.factors, self.place.gaps) = (factors, gaps);
         self.measure.meet(&z, &increments.force);
         (self.z, self.increments, self.integrals) = (z, increments, Some(integrals));
         let problem = self.problem_at(&self.place.factors, &self.place.gaps);
@@ -146,7 +140,15 @@ impl SpaceWalk<'_> {
         for (i, (pair, shown)) in problem.system.pairs.iter().zip(shown).enumerate() {
             let moves = self.increments.slip(pair) != [0.0; 2];
             self.slid[i] = moves || (self.slid[i] && self.at_limit(pair.tangential.clone(), &shown));
+            // What does not leave the limit at which it slipped goes on, however slowly at first.
+            match &mut way[i] {
+                (state @ State::Stick, _) | (State::Open, Some(state @ State::Stick)) if self.slid[i] => {
+                    *state = State::Slip
+                }
+                _ => {}
+            }
         }
+        self.place.way = way;
     }
 
     /// Whether the friction of a pair is at its bound.
@@ -342,8 +344,14 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
         self.place.laws.problem.clone().with_polygon(self.polygon()).with_gaps(gaps).with_factors(factors)
     }
 
-    fn stand_behind(&mut self, _: &[f64], _: DVector<f64>) -> Result<Option<&'static str>, PathError> {
-        Ok(Some("before it began: a history in space begins at the unloaded structure"))
+    fn stand_behind(&mut self, factors: &[f64], slips: DVector<f64>) -> Result<Option<&'static str>, PathError> {
+        let gaps: Vec<f64> = self.place.laws.problem.gaps().collect();
+        let Ok(step) = self.stepper.anywhere(self.problem_at(factors, &gaps), &slips)? else {
+            return Ok(Some("without an answer on Coulomb's cone"));
+        };
+        let (scheme, still) = (step.scheme.clone(), Integrals { z: step.z.clone(), dissipated: 0.0 });
+        self.stand(step, scheme, still, (factors.to_vec(), gaps));
+        Ok(None)
     }
 
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError> {
