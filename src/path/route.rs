@@ -72,7 +72,9 @@ impl<'a> Route<'a> {
     /// # Errors
     /// No answer at either end or at the present value; see [`PathError`].
     pub fn new(case: Case<'a>, name: &str, range: [f64; 2]) -> Result<Option<Route<'a>>, PathError> {
-        Route::from_start(case, name, range, false, &|case: Case<'_>| Ok(case.solve_pairs()?.if_answer(case.rules.cone)))
+        Route::from_start(case, name, range, false, &|case: Case<'_>| {
+            Ok(case.solve_pairs()?.if_answer(case.rules.cone))
+        })
     }
 
     /// The same from an answer that `solve` finds, looking for a start at the upper end first where that is wanted: where there

@@ -87,9 +87,7 @@ fn places_are_found_along_the_cone() {
     let found = report(&mut session, "find Y -2..2 where state a = stick").expect("found");
     near(&found["holds"][0][0], -0.8, 1e-9);
     near(&found["holds"][0][1], 0.8, 1e-9);
-    assert!(
-        text(&mut session, "find Y -2..2 where state a = stick").contains("that nothing else happens within a step")
-    );
+    assert!(text(&mut session, "find Y -2..2 where state a = stick").contains("followed on Coulomb's cone in steps"));
 }
 
 /// The push passes the disc of friction at a distance of 1 − 1e-10: the block sticks over 2 √2e-10 of the way, far less
