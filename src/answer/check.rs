@@ -7,7 +7,7 @@ use super::record::Check;
 use crate::contact::on_cone::OnCone;
 use crate::contact::problem::ContactProblem;
 use crate::contact::sum::Sum;
-use crate::contact::sums::{displacement_share, pair_sums};
+use crate::contact::sums::{pair_sums, share_of};
 use crate::lcp::problem::NOISE;
 
 /// Largest relative violation that an answer may have where sizes are those of a whole problem.
@@ -30,9 +30,9 @@ pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: 
     }
     let mut check = Check { equilibrium, ..Check::default() };
     let (unknowns, responses) = state.in_forms(system);
-    let share = |joint: usize| match system.is_forced(joint) {
-        true => responses[joint].share().abs(),
-        false => displacement_share(system, &unknowns, &responses, joint),
+    let share = |joint: usize, moved: f64| match system.is_forced(joint) {
+        true => Sum { value: moved, ..responses[joint] }.share(),
+        false => share_of(system, &unknowns, &responses, (joint, moved)),
     };
     let mut couple = |x: Sum, z: f64, share: f64| {
         check.min_w = check.min_w.min(x.share());
@@ -44,15 +44,17 @@ pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: 
     for (i, pair) in system.pairs.iter().enumerate() {
         let sums = pair_sums(problem, &forces, (i, state.z[i] > 0.0));
         match sums.normal {
-            Some(normal) => couple(normal, state.z[i], share(i)),
+            Some(normal) => couple(normal, state.z[i], share(i, state.z[i].abs())),
             // Held both ways: what it repeats must leave it at rest.
-            None if system.is_forced(i) => couple(Sum::exactly(1.0), state.z[i], share(i)),
+            None if system.is_forced(i) => couple(Sum::exactly(1.0), state.z[i], share(i, state.z[i].abs())),
             None => {}
         }
-        let share = pair.tangential.clone().map(share).fold(0.0, f64::max);
         let slips = problem.polygon.slips(state.slip(pair));
-        for (reserve, slip) in sums.reserves.into_iter().zip(slips) {
-            couple(reserve, slip, share);
+        for (facet, (reserve, slip)) in sums.reserves.into_iter().zip(slips).enumerate() {
+            // Beside a facet rounding leaves a slip along its neighbour, on which next to no force hangs.
+            let along = pair.tangential.clone().zip(problem.polygon.direction(facet));
+            let hangs = along.map(|(joint, d)| share(joint, (slip * d).abs())).fold(0.0, f64::max);
+            couple(reserve, slip, hangs);
         }
     }
     for left in &state.left {

@@ -127,7 +127,11 @@ pub fn friction_bound(problem: &ContactProblem, forces: &[Sum], (pair, is_open):
 /// What share of the forces hangs on the displacement of a joint: max over the rows of |R_ik z_k| / Σ |terms|, 0 … 1. A z
 /// whose share is a few ε cannot be told from 0 by any force. A joint that no force feels is measured by the largest z.
 pub fn displacement_share(system: &ContactSystem, z: &DVector<f64>, forces: &[Sum], joint: usize) -> f64 {
-    let moved = z[joint].abs();
+    share_of(system, z, forces, (joint, z[joint].abs()))
+}
+
+/// The same of a part of it, `moved` ≥ 0: of the slip along one facet.
+pub fn share_of(system: &ContactSystem, z: &DVector<f64>, forces: &[Sum], (joint, moved): (usize, f64)) -> f64 {
     if moved == 0.0 {
         return 0.0;
     }

@@ -77,6 +77,29 @@ fn a_slider_on_two_springs_moves_towards_the_pull() {
     assert_eq!(told(&mut session, "pairs")[0]["state"], "stick");
 }
 
+/// Pulled along a facet the slider slips by (|F| − f W)/k along it on the polygon as on the cone. Rounding leaves a slip along
+/// the next facet, 1e-16 of the other, which is no fault of the answer.
+#[test]
+fn a_pull_along_a_facet_is_answered_on_its_polygon_at_once() {
+    let mut session = embedded("bearing-two-way");
+    text(&mut session, "set cone off");
+    for facets in [6, 12, 16, 32] {
+        text(&mut session, &format!("set facets {facets}"));
+        for facet in 0..facets {
+            let (sine, cosine) = (std::f64::consts::TAU * f64::from(facet) / f64::from(facets)).sin_cos();
+            for pull in [3.0, 7.3] {
+                text(&mut session, &format!("set Fx {:e}", pull * cosine));
+                let said = text(&mut session, &format!("set Fy {:e}", pull * sine)) + &text(&mut session, "solve");
+                let what = format!("facet {facet} of {facets}, {pull}: {said}");
+                assert!(!said.contains("led to it"), "{what}");
+                let [along, across] = vector(&told(&mut session, "pairs")[0]["z_t"]);
+                near(&what, along, (pull - 2.0) * cosine, 1e-12, 1.0);
+                near(&what, across, (pull - 2.0) * sine, 1e-12, 1.0);
+            }
+        }
+    }
+}
+
 /// Friction has no favourite direction: the block slides at P = f W whatever the angle, W = 25 · 1 · 0.8 · 0.4.
 #[test]
 fn a_block_slides_at_f_times_its_weight_at_every_angle() {
