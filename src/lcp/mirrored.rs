@@ -15,6 +15,7 @@ use nalgebra::{DMatrix, DVector};
 use super::dense::add_columns;
 use super::outcome::Point;
 use super::problem::{Lcp, Scale, as_good_as_nothing};
+use crate::doubled::Real;
 
 /// The mirror of a primary row.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,9 +36,10 @@ impl Mirror {
     /// 2 f w_n + `shift` b + e p − w_i for row i, from the w of the primary rows: the value of w_i' where `shift` = 1, its
     /// rate or an entry of its row where `shift` = 0.
     #[inline]
-    pub(crate) fn reflect(&self, i: usize, w: impl Fn(usize) -> f64, p: f64, shift: f64) -> f64 {
-        let normal = self.normal.map_or(0.0, &w);
-        2.0 * self.friction * normal + shift * self.constant + self.covering * p - w(i)
+    pub(crate) fn reflect<T: Real>(&self, i: usize, w: impl Fn(usize) -> T, p: f64, shift: f64) -> T {
+        let normal = self.normal.map_or_else(T::zero, &w);
+        T::from(2.0 * self.friction) * normal + T::from(shift * self.constant) + T::from(self.covering) * T::from(p)
+            - w(i)
     }
 }
 

@@ -1,7 +1,5 @@
 //! The watch over errors: the numbers of a stand against the data, their refinement, the dictionary built afresh.
 
-use nalgebra::DVector;
-
 use super::{Candidate, PivotState, SUSPICIOUS};
 use crate::doubled::{Doubled, Real};
 use crate::lcp::dense::add_doubled_response;
@@ -124,8 +122,9 @@ impl PivotState {
     }
 }
 
-/// The numbers of all variables, values or rates, as the dictionary holds them, and w as the data give it.
-struct Numbers<'a> {
+/// The numbers of all variables, values or rates, as the dictionary holds them, and w as the data give it, in f64 or in
+/// doubled precision.
+struct Numbers<'a, T: Real = f64> {
     stand: &'a PivotState,
     /// Of the basic variables, row by row.
     held: &'a [f64],
@@ -135,39 +134,51 @@ struct Numbers<'a> {
     shift: f64,
     p: f64,
     /// M z + shift q + d p over the primary rows.
-    w: DVector<f64>,
-    /// The same in doubled precision, where that was asked for.
-    doubled: Option<Vec<Doubled>>,
+    w: Vec<T>,
 }
 
 impl<'a> Numbers<'a> {
     fn new(stand: &'a PivotState, held: &'a [f64], entering: Option<usize>, shift: f64) -> Numbers<'a> {
-        let mut numbers = Numbers { stand, held, entering, shift, p: 0.0, w: DVector::zeros(0), doubled: None };
+        let mut numbers = Numbers { stand, held, entering, shift, p: 0.0, w: Vec::new() };
         let z = numbers.take_unknowns();
         let lcp = &stand.lcp;
-        numbers.w = lcp.times(&z) + shift * &lcp.q + numbers.p * &lcp.covering;
+        numbers.w = (lcp.times(&z) + shift * &lcp.q + numbers.p * &lcp.covering).as_slice().to_vec();
         numbers
     }
 
-    /// Values, w in doubled precision.
-    fn doubled(stand: &'a PivotState, held: &'a [f64]) -> Numbers<'a> {
-        let (entering, shift, w) = (None, 1.0, DVector::zeros(0));
-        let mut numbers = Numbers { stand, held, entering, shift, p: 0.0, w, doubled: None };
+    /// The largest difference between the dictionary and the data, relative to the natural sizes of the rows; `size`: Σ
+    /// column_k |z_k|.
+    fn error(&self, size: f64) -> f64 {
+        let stand = self.stand;
+        (0..stand.lcp.size())
+            .map(|i| {
+                let held = self.turned(i, |row| self.of(Slot::W(row)));
+                let natural = stand.rate_size(Slot::W(i), size, self.p) + self.shift * stand.sizes.q[i];
+                (self.w[i] - held).abs() / natural.max(f64::MIN_POSITIVE)
+            })
+            .fold(0.0, larger)
+    }
+}
+
+impl<'a> Numbers<'a, Doubled> {
+    /// Values.
+    fn doubled(stand: &'a PivotState, held: &'a [f64]) -> Numbers<'a, Doubled> {
+        let mut numbers = Numbers { stand, held, entering: None, shift: 1.0, p: 0.0, w: Vec::new() };
         let z = numbers.take_unknowns();
         let lcp = &stand.lcp;
         let (mut high, mut low) = (vec![0.0; lcp.size()], vec![0.0; lcp.size()]);
         add_doubled_response(&mut high, &mut low, lcp.base.as_slice(), &z);
         let own = |i: usize| Doubled::sum(high[i], low[i]);
-        let w = (0..lcp.size()).map(|i| {
+        let w = |i: usize| {
             let coupled = lcp.coupling(i).map_or_else(Doubled::default, |(n, f)| Doubled::from(f) * own(n));
             own(i) + coupled + Doubled::from(lcp.q[i]) + Doubled::product(lcp.covering[i], numbers.p)
-        });
-        let w: Vec<Doubled> = w.collect();
-        numbers.w = DVector::from_iterator(w.len(), w.iter().map(|w| w.to_f64()));
-        numbers.doubled = Some(w);
+        };
+        numbers.w = (0..lcp.size()).map(w).collect();
         numbers
     }
+}
 
+impl<T: Real> Numbers<'_, T> {
     /// Takes p over; z of the primary rows, z⁺ − z⁻ for couples.
     fn take_unknowns(&mut self) -> Vec<f64> {
         self.p = self.of(Slot::P);
@@ -192,7 +203,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// `w` of row i where it is turned round, from the w of the primary rows, and the other way.
-    fn turned(&self, i: usize, w: impl Fn(usize) -> f64) -> f64 {
+    fn turned<N: Real>(&self, i: usize, w: impl Fn(usize) -> N) -> N {
         match &self.stand.lcp.mirrors[i] {
             Some(mirror) if self.stand.dictionary.turned[i] => mirror.reflect(i, w, self.p, self.shift),
             _ => w(i),
@@ -201,30 +212,7 @@ impl<'a> Numbers<'a> {
 
     /// w of row i as the data give it, in the orientation in which the dictionary holds it.
     fn of_data(&self, i: usize) -> f64 {
-        let stand = self.stand;
-        match (&self.doubled, &stand.lcp.mirrors[i]) {
-            (Some(w), Some(mirror)) if stand.dictionary.turned[i] => {
-                let normal =
-                    mirror.normal.map_or_else(Doubled::default, |n| Doubled::from(2.0 * mirror.friction) * w[n]);
-                let given = Doubled::from(self.shift * mirror.constant) + Doubled::product(mirror.covering, self.p);
-                (normal + given - w[i]).to_f64()
-            }
-            (Some(w), _) => w[i].to_f64(),
-            (None, _) => self.turned(i, |row| self.w[row]),
-        }
-    }
-
-    /// The largest difference between the dictionary and the data, relative to the natural sizes of the rows; `size`: Σ
-    /// column_k |z_k|.
-    fn error(&self, size: f64) -> f64 {
-        let stand = self.stand;
-        (0..stand.lcp.size())
-            .map(|i| {
-                let held = self.turned(i, |row| self.of(Slot::W(row)));
-                let natural = stand.rate_size(Slot::W(i), size, self.p) + self.shift * stand.sizes.q[i];
-                (self.w[i] - held).abs() / natural.max(f64::MIN_POSITIVE)
-            })
-            .fold(0.0, larger)
+        self.turned(i, |row| self.w[row]).to_f64()
     }
 
     /// One step of iterative refinement: the equations of the scheme as the data give them, solved by the dictionary.
