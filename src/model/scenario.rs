@@ -117,16 +117,33 @@ pub struct Stage {
 /// a plate, the pairs of an edge) share its path. Empty for the other sources, except `pairs`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Places {
-    /// Of each node.
-    pub nodes: Vec<Arc<str>>,
+    /// Of the nodes, one entry after the other.
+    pub nodes: Vec<NodePlace>,
     /// Of each element: its bar, plate or quad.
     pub elements: Vec<Arc<str>>,
-    /// Of each held component in `Structure::supports`.
-    pub supports: Vec<Arc<str>>,
-    /// Of each tie.
-    pub ties: Vec<Arc<str>>,
     /// Of each contact pair.
     pub pairs: Vec<Arc<str>>,
+}
+
+/// Where nodes that follow one another come from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodePlace {
+    /// Index of the first node that is not of here.
+    pub end: usize,
+    /// JSON path of the entry; of the list where each node has its own, under its id.
+    pub path: Arc<str>,
+    pub is_list: bool,
+}
+
+impl Places {
+    /// JSON path of what a node comes from.
+    pub fn of_node(&self, structure: &Structure, node: usize) -> String {
+        match self.nodes.get(self.nodes.partition_point(|place| place.end <= node)) {
+            Some(place) if place.is_list => format!("{}.{}", place.path, structure.nodes[node].id),
+            Some(place) => place.path.to_string(),
+            None => String::new(),
+        }
+    }
 }
 
 /// A scenario that passed every check.

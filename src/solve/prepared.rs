@@ -181,7 +181,7 @@ fn prepare_plain(given: &GivenLcp) -> Prepared {
 /// Gives an error of the main system its place in the file.
 pub(super) fn main_system_problem(scenario: &Scenario, structure: &Structure, error: MainSystemError) -> PrepareError {
     let places = &scenario.places;
-    let node = |node: usize| places.nodes.get(node).map_or(String::new(), ToString::to_string);
+    let node = |node: usize| places.of_node(structure, node);
     let path = match &error {
         MainSystemError::Interrupted => return PrepareError::Interrupted,
         MainSystemError::DependentJoints(joints) => {

@@ -67,7 +67,10 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     if metadata.is_file() && metadata.len() > LARGEST {
         return Err(too_large(LARGEST));
     }
-    read_all(file)
+    // Of a pipe, and of what the system makes up as it is read, the length is 0.
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(metadata.len() as usize).map_err(|_| no_room(0))?;
+    read_up_to(LARGEST, file, bytes)
 }
 
 /// The text of a file or a pipe.
@@ -92,11 +95,10 @@ pub fn text_of(bytes: Vec<u8>) -> io::Result<String> {
 /// # Errors
 /// Those of reading; too much, or too much for the memory there is.
 pub fn read_all(from: impl Read) -> io::Result<Vec<u8>> {
-    read_up_to(LARGEST, from)
+    read_up_to(LARGEST, from, Vec::new())
 }
 
-fn read_up_to(largest: u64, mut from: impl Read) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
+fn read_up_to(largest: u64, mut from: impl Read, mut bytes: Vec<u8>) -> io::Result<Vec<u8>> {
     let mut piece = vec![0; PIECE];
     loop {
         let count = match from.read(&mut piece) {
@@ -108,11 +110,13 @@ fn read_up_to(largest: u64, mut from: impl Read) -> io::Result<Vec<u8>> {
         if (bytes.len() + count) as u64 > largest {
             return Err(too_large(largest));
         }
-        bytes.try_reserve(count).map_err(|_| {
-            refused(format!("the memory this process may use does not hold more than {} bytes of it", bytes.len()))
-        })?;
+        bytes.try_reserve(count).map_err(|_| no_room(bytes.len()))?;
         bytes.extend_from_slice(&piece[..count]);
     }
+}
+
+fn no_room(read: usize) -> io::Error {
+    refused(format!("the memory this process may use does not hold more than {read} bytes of it"))
 }
 
 fn too_large(largest: u64) -> io::Error {
@@ -142,7 +146,7 @@ mod tests {
 
     #[test]
     fn what_never_ends_is_refused() {
-        let error = read_up_to(3 << 20, io::repeat(b' ')).expect_err("endless").to_string();
+        let error = read_up_to(3 << 20, io::repeat(b' '), Vec::new()).expect_err("endless").to_string();
         assert!(error.contains("3 MiB"), "{error}");
     }
 

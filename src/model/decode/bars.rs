@@ -6,7 +6,7 @@ use super::builder::{Bending, Builder, Section, id_of, material_of};
 use super::reader::{Cursor, Fields};
 use crate::model::bar_axes::{AxesFault, BarAxes};
 use crate::model::space_section::EndJoint;
-use crate::model::structure::{Bar, Dimension, Element, ElementKind, Node};
+use crate::model::structure::{Bar, Dimension, Element, ElementKind};
 use crate::model::vector::distance;
 
 /// A bar before its division.
@@ -187,7 +187,7 @@ fn hinges(cursor: Cursor<'_>) -> Option<[bool; 2]> {
 
 /// Resolves the nodes of a bar and appends its inner nodes and elements. The node before element k is `ID/k` unless the
 /// file names it.
-pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str>) {
+pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: &Arc<str>) {
     let nodes: Vec<Option<usize>> = bar.nodes.iter().map(|&node| builder.node(node)).collect();
     let Some(nodes) = nodes.into_iter().collect::<Option<Vec<usize>>>() else {
         builder.broken.insert(bar.id);
@@ -212,11 +212,9 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: Arc<str
         }
         for inner in 1..bar.divisions {
             let t = inner as f64 / bar.divisions as f64;
-            let node = Node {
-                id: format!("{}/{}", bar.id, chain.len()),
-                position: std::array::from_fn(|c| from[c] + t * (to[c] - from[c])),
-            };
-            chain.push(builder.add_node(node, place.clone()));
+            let id = format!("{}/{}", bar.id, chain.len());
+            let position = std::array::from_fn(|c| from[c] + t * (to[c] - from[c]));
+            chain.push(builder.add_node(id.into(), position));
         }
         chain.push(ends[1]);
     }

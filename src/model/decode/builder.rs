@@ -9,7 +9,7 @@ use super::reader::{Cursor, Fields, Place};
 use super::words::{ID_RULE, is_id, quoted};
 use crate::model::bar_axes::BarAxes;
 use crate::model::edge::Edge;
-use crate::model::scenario::Places;
+use crate::model::scenario::{NodePlace, Places};
 use crate::model::space_section::SpaceSection;
 use crate::model::structure::{Component, ElementKind, Node, Structure};
 use crate::model::superelement::Superelement;
@@ -80,7 +80,7 @@ pub struct Builder<'d> {
     /// Triangles and quads by their ids.
     pub single_elements: HashMap<&'d str, usize>,
     /// Nodes of the author and of bar divisions; those of plates and meshes are found by their indices.
-    pub nodes: HashMap<String, usize>,
+    pub nodes: HashMap<Cow<'d, str>, usize>,
     /// Every id and what it names.
     ids: HashMap<&'d str, &'static str>,
     /// Names whose definition is wrong: reported there, not again where they are used.
@@ -112,12 +112,19 @@ impl<'d> Builder<'d> {
     }
 
     /// Appends a node that can be named.
-    pub fn add_node(&mut self, node: Node, place: Arc<str>) -> usize {
+    pub fn add_node(&mut self, id: Cow<'d, str>, position: [f64; 3]) -> usize {
         let index = self.structure.nodes.len();
-        self.nodes.insert(node.id.clone(), index);
-        self.structure.nodes.push(node);
-        self.places.nodes.push(place);
+        self.structure.nodes.push(Node { id: id.to_string(), position });
+        self.nodes.insert(id, index);
         index
+    }
+
+    /// The nodes since the last call come from the entry at a path, or each from its own in the list there.
+    pub fn place_nodes(&mut self, path: impl Into<Arc<str>>, is_list: bool) {
+        let end = self.structure.nodes.len();
+        if self.places.nodes.last().map_or(0, |place| place.end) < end {
+            self.places.nodes.push(NodePlace { end, path: path.into(), is_list });
+        }
     }
 
     /// The id of a node.
@@ -127,16 +134,19 @@ impl<'d> Builder<'d> {
 
     /// Adds the nodes of the file, which stand at the path `within`; the places of their names.
     pub fn add_nodes(&mut self, nodes: Option<Cursor<'d>>, within: &str) -> Vec<Place<'d>> {
-        let mut names = Vec::new();
         let entries = nodes.and_then(Cursor::entries);
         self.nodes_are_unknown = nodes.is_some() && entries.is_none();
-        for entry in entries.unwrap_or_default() {
+        let entries = entries.unwrap_or_default();
+        let mut names = Vec::with_capacity(entries.len());
+        self.structure.nodes.reserve_exact(entries.len());
+        for entry in entries {
             self.register(entry.key_place(), entry.name(), "node");
             // A node without a usable place stays known, with a place that no geometric check complains about.
             let position = entry.value().vector().unwrap_or([f64::NAN; 3]);
             names.push(entry.key_place());
-            self.add_node(Node { id: entry.name().to_string(), position }, format!("{within}.{}", entry.name()).into());
+            self.add_node(entry.name().into(), position);
         }
+        self.place_nodes(within, true);
         names
     }
 

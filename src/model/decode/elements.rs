@@ -40,20 +40,22 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) -> Option<()> {
     for (index, (_, plate)) in plates.iter().enumerate() {
         let nodes = plate.append_nodes(&mut builder.structure.nodes);
         builder.structure.plates.push(Plate { id: plate.id.clone(), elements: 0..0, nodes });
-        let place: Arc<str> = format!("plates[{index}]").into();
-        builder.places.nodes.resize(builder.structure.nodes.len(), place);
+        builder.place_nodes(format!("plates[{index}]"), false);
     }
     for (index, (_, brick)) in bricks.iter().enumerate() {
         let brick = brick.append_nodes(&mut builder.structure.nodes);
         builder.structure.bricks.push(brick);
-        builder.places.nodes.resize(builder.structure.nodes.len(), format!("bricks[{index}]").into());
+        builder.place_nodes(format!("bricks[{index}]"), false);
     }
     let place = |index: usize| -> Arc<str> { format!("meshes[{index}]").into() };
     for (index, mesh) in meshes.iter().enumerate() {
-        mesh_elements::append_nodes(builder, mesh, &place(index));
+        mesh_elements::append_nodes(builder, mesh);
+        builder.place_nodes(place(index), false);
     }
     for (index, bar) in bars.into_iter().enumerate() {
-        divide(builder, bar, format!("bars[{index}]").into());
+        let place: Arc<str> = format!("bars[{index}]").into();
+        divide(builder, bar, &place);
+        builder.place_nodes(place, false);
     }
     for end in std::mem::take(&mut builder.ends_of_broken_bars) {
         builder.node(end);

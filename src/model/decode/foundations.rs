@@ -8,7 +8,7 @@ use super::spot::Spot;
 use crate::model::face::Face;
 use crate::model::pair::{Law, Pair};
 use crate::model::parameter::Number;
-use crate::model::structure::{Dimension, Node, Spring};
+use crate::model::structure::{Dimension, Spring};
 use crate::model::uses::Region;
 use crate::model::vector::{distance, length};
 
@@ -200,7 +200,8 @@ fn bonded(builder: &mut Builder<'_>, foundation: &Foundation<'_>, at: &Place) {
 fn tensionless(builder: &mut Builder<'_>, foundation: &Foundation<'_>, index: usize, at: &Place, place: &str) {
     let id = format!("{}[{index}]", foundation.id);
     let position = builder.structure.nodes[at.node].position;
-    let ground = builder.add_node(Node { id: format!("{}/{index}", foundation.id), position }, place.into());
+    let ground = builder.add_node(format!("{}/{index}", foundation.id).into(), position);
+    builder.place_nodes(place, false);
     builder.has_rotation.push(false);
     builder.structure.yielding_ground.push(ground);
     let tangents = tangents(builder, at);

@@ -13,7 +13,7 @@ use crate::model::mesh::chain::{chains, oriented};
 use crate::model::structure::{Bar, Body, Dimension, Element, ElementKind, MeshElements, Node};
 
 /// Appends the nodes `ID/TAG` that are used.
-pub fn append_nodes<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, place: &Arc<str>) {
+pub fn append_nodes<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>) {
     let mut node_of = vec![None; outline.mesh.nodes.len()];
     for ((node, used), index) in outline.mesh.nodes.iter().zip(outline.used_nodes()).zip(&mut node_of) {
         if used {
@@ -25,7 +25,6 @@ pub fn append_nodes<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, pl
             builder.structure.nodes.push(Node { id, position: [x, y, z].map(|x| outline.scale * x) });
         }
     }
-    builder.places.nodes.resize(builder.structure.nodes.len(), place.clone());
     let part = MeshPart::new(outline.id, Arc::clone(&outline.mesh), node_of);
     builder.meshes.entry(outline.id).or_insert(part);
 }

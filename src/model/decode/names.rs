@@ -193,7 +193,7 @@ impl<'d> Builder<'d> {
             cursor.problem(format!("the bar \"{id}\" has no node {}", quoted(name)), help);
             return;
         }
-        let hint = did_you_mean(name, self.nodes.keys().map(String::as_str));
+        let hint = did_you_mean(name, self.nodes.keys().map(AsRef::as_ref));
         let help = if hint.is_empty() {
             match self.structure.dimension {
                 Dimension::Plane => {

@@ -10,8 +10,7 @@ use crate::model::uses::Region;
 /// Reads `supports`.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
     let mut held = HashSet::new();
-    for (index, cursor) in entries(fields, "supports").into_iter().enumerate() {
-        let place: std::sync::Arc<str> = format!("supports[{index}]").into();
+    for cursor in entries(fields, "supports") {
         for (support, settlement) in support(builder, cursor).unwrap_or_default() {
             if let Some((case, value)) = settlement {
                 builder.settlements.push(Settlement { case, node: support.node, component: support.component, value });
@@ -19,7 +18,6 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
             // Two edges share their corner: held twice is held.
             if held.insert((support.node, support.component)) {
                 builder.structure.supports.push(support);
-                builder.places.supports.push(place.clone());
             }
         }
     }

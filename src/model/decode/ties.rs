@@ -9,11 +9,8 @@ use crate::model::structure::Tie;
 
 /// Reads `ties`.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
-    for (index, cursor) in entries(fields, "ties").into_iter().enumerate() {
-        if let Some(tie) = tie(builder, cursor) {
-            builder.structure.ties.push(tie);
-            builder.places.ties.push(format!("ties[{index}]").into());
-        }
+    for cursor in entries(fields, "ties") {
+        builder.structure.ties.extend(tie(builder, cursor));
     }
 }
 
