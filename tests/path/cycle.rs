@@ -89,10 +89,10 @@ fn what_cannot_be_repeated_is_refused() {
         ("cycle", "required"),
         ("cycle F2", "expected `cycle LOAD A..B"),
         ("cycle F2 5..5", "empty"),
-        ("cycle F2 0..x", "no range"),
+        ("cycle F2 0..x", "not a range"),
         ("cycle F3 0..1", "no parameter or load case `F3`"),
         ("cycle f 0..1", "no factor of a load case depends on it"),
-        ("cycle F2 0..1 0", "no number of cycles"),
+        ("cycle F2 0..1 0", "not a number of cycles"),
         ("limit cycle F2 0..1 2", ""),
         ("limit F2 pull", "of which load?"),
     ] {

@@ -138,7 +138,7 @@ fn sensitivity_to_amounts_of_loads_is_the_slope_of_the_answers() {
     }
     let push = POINT.replace("\"H\"", "\"H^2\"");
     let error = report(&mut block("\"H\": 1", "0.4", &push), "sensitivity H").unwrap_err();
-    assert!(error.contains("no linear function of it: it stands in the loads (loads.push.items[0]"), "{error}");
+    assert!(error.contains("not a linear function of it: it stands in the loads (loads.push.items[0]"), "{error}");
 }
 
 #[test]

@@ -290,12 +290,12 @@ mod tests {
     #[test]
     fn what_is_none_says_what_was_expected() {
         for (text, part) in [
-            ("uniform(1)", "no distribution"),
+            ("uniform(1)", "not a distribution"),
             ("uniform(2,1)", "smaller number"),
             ("normal(0,0)", "deviation"),
             ("lognormal(-1,1)", "mean"),
             ("triangular(3,2,1)", "likeliest"),
-            ("gumbel(1,2)", "no distribution"),
+            ("gumbel(1,2)", "not a distribution"),
             ("uniform(0,inf)", "finite"),
             ("uniform(-2,-1)>=0", "nothing of it"),
         ] {

@@ -85,10 +85,7 @@ const SIGNS: &[(&str, &str)] = &[
     ("moments     ", "and rotations: counter-clockwise"),
     ("reactions   ", "of the support on the structure; those of the ground stand under pairs"),
     ("stresses    ", "> 0: tension"),
-    (
-        "in space    ",
-        "t1 is global x laid on the plane of contact, t2 = n × t1; x_τ, z_τ are vectors; M_y > 0: tension on the −z side; moments and rotations right-handed",
-    ),
+    ("in space    ", "t1: global x on the plane of contact; t2 = n × t1; M_y > 0: tension on −z"),
 ];
 
 #[cfg(test)]
