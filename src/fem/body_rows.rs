@@ -10,7 +10,7 @@
 use super::classes::Classes;
 use super::dof::Dofs;
 use super::error::{Holder, OverConstraint};
-use super::idle_spins::IdleSpin;
+use super::idle_spins::{IdleSpin, turn};
 use crate::model::structure::Structure;
 use crate::model::vector::way;
 
@@ -40,8 +40,8 @@ pub fn body_rows(structure: &Structure, dofs: &Dofs, spins: &[IdleSpin]) -> Vec<
         }
     }
     for spin in spins {
-        let Some(&node) = spin.nodes.first() else { continue };
-        rows.push(BodyRow { body: None, terms: spin.turn(dofs, node) });
+        let Some(&(node, _)) = spin.turns.first() else { continue };
+        rows.push(BodyRow { body: None, terms: turn(dofs, node, spin.axis) });
     }
     rows
 }

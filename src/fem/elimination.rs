@@ -316,7 +316,7 @@ fn held_spins(structure: &Structure) -> Vec<IdleSpin> {
     if structure.dimension == Dimension::Plane || !turns() {
         return Vec::new();
     }
-    idle_spins(structure, &Parts::new(structure)).into_iter().filter(|spin| !spin.nodes.is_empty()).collect()
+    idle_spins(structure, &Parts::new(structure)).into_iter().filter(|spin| !spin.turns.is_empty()).collect()
 }
 
 /// Reduces the rows of the bodies; they are numbered from `first` on.
@@ -335,7 +335,7 @@ fn reduce_bodies(
     for (index, row) in rows.iter().enumerate() {
         let terms = row.terms.iter().map(|&(dof, a)| (usize::from(dof != row.terms[0].0), (dof, a)));
         let Err(left) = reduction.add(JointRow::of_terms(first + index, terms, classes)) else { continue };
-        // Nothing else has to do with an idle spin, so that its row cannot repeat others.
+        // What else is held leaves an idle spin alone, so that its row cannot repeat others.
         let Some(body) = row.body else { continue };
         if wrong.last().is_none_or(|last| last.body != body) {
             let involved = left.joints.keys().filter_map(|other| rows.get((*other as usize).checked_sub(first)?));

@@ -16,6 +16,9 @@ pub type Terms = Vec<(usize, f64)>;
 /// the share `null` of the largest count as zero, and in an elimination what is below that share of the terms it sums.
 /// `None` if the decomposition does not converge.
 pub fn null_basis(rows: &[Terms], columns: usize, null: f64) -> Option<DMatrix<f64>> {
+    if rows.is_empty() {
+        return Some(DMatrix::identity(columns, columns));
+    }
     let basis =
         if columns <= DENSE { by_singular_values(rows, columns, null)? } else { by_elimination(rows, columns, null) };
     Some(echelon(basis, columns))

@@ -3,7 +3,7 @@
 use super::dof::Dofs;
 use super::elimination::Elimination;
 use super::error::MainSystemError;
-use super::idle_spins::IdleSpin;
+use super::idle_spins::{IdleSpin, turn};
 use super::kernel::mechanism;
 use super::loads::{load_vectors, settlements};
 use super::repeated::Repeated;
@@ -12,8 +12,8 @@ use crate::model::pair::Joint;
 use crate::model::structure::Structure;
 use crate::watch::Watch;
 
-/// A torque below this share of the moments that it is the sum of is their rounding.
-const NO_TORQUE: f64 = 16.0 * f64::EPSILON;
+/// A torque below this share of the moments that it is the sum of is the rounding of them and of the spins.
+const NO_TORQUE: f64 = 1024.0 * f64::EPSILON;
 
 /// See the module; the parts are those of [`MainSystem`](super::MainSystem).
 pub struct Outline {
@@ -58,15 +58,14 @@ pub fn refuse_torques(
     f: &[Vec<f64>],
 ) -> Result<(), MainSystemError> {
     for spin in spins {
-        let terms: Vec<(usize, f64)> = spin.nodes.iter().flat_map(|&node| spin.turn(dofs, node)).collect();
+        let terms: Vec<(usize, f64)> = spin.turns.iter().flat_map(|&(node, axis)| turn(dofs, node, axis)).collect();
         for f in f {
             let (torque, size) = terms
                 .iter()
                 .fold((0.0, 0.0), |(sum, size): (f64, f64), &(dof, a)| (sum + a * f[dof], size + (a * f[dof]).abs()));
             if torque.abs() > NO_TORQUE * size {
                 let mut u = vec![[0.0; 6]; structure.nodes.len()];
-                let [x, y, z] = spin.axis;
-                spin.nodes.iter().for_each(|&node| u[node] = [0.0, 0.0, 0.0, x, y, z]);
+                spin.turns.iter().for_each(|&(node, [x, y, z])| u[node] = [0.0, 0.0, 0.0, x, y, z]);
                 return Err(mechanism(structure, &u));
             }
         }

@@ -135,6 +135,13 @@ fn a_divided_bar_between_ball_joints_is_a_simple_beam() {
     }
 }
 
+/// What is said of a structure in space that cannot be solved.
+fn refused(value: Value) -> String {
+    let scenario = load_text("test", &scenario_text(value), None).expect("a scenario");
+    let Err(refused) = prepare(&scenario, &Quiet) else { panic!("to be refused") };
+    refused.to_string()
+}
+
 /// A torque on it is taken where a joint is clamped, a hinge hands it on: θ = T (L/2)/GJ. Between ball joints nothing takes it.
 #[test]
 fn a_torque_between_ball_joints_has_nothing_to_hold_it() {
@@ -145,9 +152,7 @@ fn a_torque_between_ball_joints_has_nothing_to_hold_it() {
     near_all("moment", &answer.reactions.as_ref().expect("reactions")[0].moment(), &[-6.0, 0.0, 0.0], 1e-10);
     let mut loose = between_joints(2, &["x", "y", "z"], torque());
     loose["dimension"] = json!(3);
-    let scenario = load_text("test", &scenario_text(loose), None).expect("a scenario");
-    let Err(refused) = prepare(&scenario, &Quiet) else { panic!("a torque that drives the spin is to be refused") };
-    let refused = refused.to_string();
+    let refused = refused(loose);
     assert!(refused.contains("node ab/1 is free to move by turning (rx)"), "{refused}");
 }
 
@@ -177,6 +182,65 @@ fn a_column_between_ball_joints_carries_a_hinged_beam() {
     near_all("foot", &reaction("foot"), &[-30.0 * 3.0 / 5.0, -6.0 * 3.0 / 5.0, 10.0], 1e-10);
     near_all("head", &reaction("head"), &[-30.0 * 2.0 / 5.0, -6.0 * 2.0 / 5.0, 0.0], 1e-10);
     near_all("c", &reaction("c"), &[0.0, -6.0, 10.0], 1e-10);
+}
+
+/// Two cantilevers that meet in a hinge at right angles share a load: w = F L³/6EI. The hinge is held against turning about x
+/// only: about y the torque of the second bar holds it, about z nothing, and nothing drives it, however much it is held.
+#[test]
+fn a_hinge_may_turn_as_nothing_resists() {
+    let (e, i, l) = (2.0e8, 3e-5, 2.0_f64);
+    let clamp = |at: &str| json!({ "at": at, "fixed": ["x", "y", "z", "rx", "ry", "rz"] });
+    let bar = |id: &str, from: &str| json!({ "id": id, "nodes": [from, "n"], "material": "m", "section": "s", "hinges": ["end"] });
+    let model = |held: &[&str], moment: [f64; 3]| {
+        json!({
+            "dimension": 3,
+            "materials": { "m": { "E": e, "nu": 0.25 } },
+            "sections": { "s": { "area": 0.01, "inertia_y": i, "inertia_z": i, "torsion": 2e-5 } },
+            "nodes": { "a": [0, 0, 0], "b": [l, -l, 0], "n": [l, 0, 0] },
+            "bars": [bar("an", "a"), bar("bn", "b")],
+            "supports": [clamp("a"), clamp("b"), { "at": "n", "fixed": held }],
+            "loads": { "F": { "items": [{ "point": { "at": "n", "force": [0, 0, -6], "moment": moment } }] } }
+        })
+    };
+    for held in [&["rx"][..], &["ry"], &["rz"], &["rx", "rz"]] {
+        let answer = space(model(held, [0.0; 3])).solve(&[]);
+        is_answer(&answer);
+        let right = [0.0, 0.0, -6.0 * l.powi(3) / (6.0 * e * i), 0.0, 0.0, 0.0];
+        near_all(&held.join(" "), &moved(&answer, "n"), &right, 1e-10);
+    }
+    // A moment about y twists the second bar, one about z nothing takes.
+    let answer = space(model(&["rx"], [0.0, 5.0, 0.0])).solve(&[]);
+    close("twist", moved(&answer, "n")[4], 5.0 * l / (e / 2.5 * 2e-5), 1e-10);
+    let refused = refused(model(&["rx"], [0.0, 0.0, 5.0]));
+    assert!(refused.contains("node n is free to move by turning (rz)"), "{refused}");
+}
+
+/// A beam along (2, 1, 2) that only its places hold, as beams are drawn: no load feels that it can spin about its line,
+/// w = FL³/48EI and M = FL/4. A torque does.
+#[test]
+fn a_beam_on_two_points_may_spin() {
+    let (e, i, f, l) = (2.0e8, 3e-5, 7.0, 6.0_f64);
+    let model = |moment: [f64; 3]| {
+        json!({
+            "dimension": 3,
+            "materials": { "m": { "E": e, "nu": 0.25 } },
+            "sections": { "s": { "area": 0.01, "inertia_y": i, "inertia_z": i, "torsion": 2e-5 } },
+            "nodes": { "a": [0, 0, 0], "b": [4, 2, 4] },
+            "bars": [{ "id": "ab", "nodes": ["a", "b"], "material": "m", "section": "s", "divisions": 2 }],
+            "supports": [{ "at": "a", "fixed": ["x", "y", "z"] }, { "at": "b", "fixed": ["x", "y", "z"] }],
+            "loads": { "F": { "items": [{ "point": { "at": "ab/1", "force": [f, -2.0 * f, 0], "moment": moment } }] } }
+        })
+    };
+    let answer = space(model([0.0; 3])).solve(&[]);
+    is_answer(&answer);
+    let bent = f * 5.0_f64.sqrt() * l.powi(3) / (48.0 * e * i);
+    let [x, y, z, ..] = moved(&answer, "ab/1");
+    near_all("middle", &[x, y, z], &[bent / 5.0_f64.sqrt(), -2.0 * bent / 5.0_f64.sqrt(), 0.0], 1e-10);
+    let member = &answer.members.as_ref().expect("members")[0];
+    let [_, my, _] = member.end.space.expect("a bar in space");
+    close("moment", my.hypot(member.end.m), f * 5.0_f64.sqrt() * l / 4.0, 1e-10);
+    let refused = refused(model([2.0, 1.0, 2.0]));
+    assert!(refused.contains("by turning about (0.667, 0.333, 0.667)"), "{refused}");
 }
 
 /// A beam on frictional supports in the plane, and the same in space: upright z in the place of y. Its numbers are those

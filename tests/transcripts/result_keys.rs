@@ -62,6 +62,48 @@ fn stresses_stand_at_nodes_and_elements() {
     near(&find(&read(&strain).result(false).unwrap()["stresses"], "element", "q1")["mises"], 117.0_f64.sqrt());
 }
 
+/// A block pulled by σ = 12 along x and sheared by τ = 8 in x–z: principal values 6 ± √(6² + 8²) and 0, von Mises
+/// √(12² + 3·8²), at every node and in every element.
+#[test]
+fn stresses_in_space_have_six_components() {
+    let text = r#"{
+      "format": "stickslip/1", "title": "block", "dimension": 3, "units": { "length": "m", "force": "kN" },
+      "materials": { "m": { "E": 20000, "nu": 0.25 } },
+      "bricks": [ { "id": "b", "origin": [0, 0, 0], "size": [2, 1, 1], "divisions": [2, 1, 1], "material": "m" } ],
+      "supports": [ { "at": "b[0,0,0]", "fixed": ["x", "y", "z"] }, { "at": "b[2,0,0]", "fixed": ["y", "z"] },
+                    { "at": "b[0,1,0]", "fixed": ["z"] } ],
+      "loads": { "F": { "items": [
+        { "traction": { "face": "b.right", "value": [12, 0, 8] } }, { "traction": { "face": "b.left", "value": [-12, 0, -8] } },
+        { "traction": { "face": "b.top", "value": [8, 0, 0] } }, { "traction": { "face": "b.bottom", "value": [-8, 0, 0] } } ] } }
+    }"#;
+    let mut session = read(text);
+    let result = session.result(false).expect("an answer");
+    let right = [
+        ("sx", 12.0),
+        ("sy", 0.0),
+        ("sz", 0.0),
+        ("sxy", 0.0),
+        ("syz", 0.0),
+        ("sxz", 8.0),
+        ("s1", 16.0),
+        ("s2", 0.0),
+        ("s3", -4.0),
+        ("mises", 336.0_f64.sqrt()),
+    ];
+    let all = result["stresses"].as_array().unwrap();
+    assert_eq!(all.len(), 12 + 2);
+    for place in all {
+        right.iter().for_each(|(key, value)| near(&place[*key], *value));
+        assert_eq!(place.as_object().unwrap().len(), 1 + right.len());
+    }
+    for (word, value) in right {
+        told(&mut session, &format!("expect {word} b{{1,0,0}} = {value} ± 1e-9")).unwrap();
+    }
+    // In the plane there are no others than before.
+    let error = told(&mut read(THREE), "show sz q1").unwrap_err();
+    assert!(error.contains("`sz` is a quantity of space"), "{error}");
+}
+
 #[test]
 fn an_unknown_element_is_told() {
     let error = told(&mut read(THREE), "show mises q2").unwrap_err();

@@ -4,6 +4,7 @@
 //! To add a quantity of a pair, a node, a bar, a stress or an answer: a variant of its family here, its line in
 //! [`WORDS`], and its reader in `path/quantity`, which the compiler asks for.
 
+use super::of_stress::OfStress;
 use crate::model::structure::{self, Component};
 use crate::model::units::Units;
 
@@ -235,23 +236,6 @@ impl Internal {
     }
 }
 
-/// A stress at a node or in an element, tension positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OfStress {
-    /// σ_xx.
-    X,
-    /// σ_yy.
-    Y,
-    /// σ_xy.
-    Xy,
-    /// The larger principal stress in the plane.
-    Larger,
-    /// The smaller one.
-    Smaller,
-    /// Equivalent stress of von Mises.
-    Mises,
-}
-
 /// How far a load can grow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OfLoad {
@@ -325,6 +309,7 @@ impl Meaning {
             Meaning::Pair(which) => which.is_of(dimension),
             Meaning::Node(which) => which.is_of(dimension),
             Meaning::Bar(which) => which.is_of(dimension),
+            Meaning::Stress(which) => which.is_of(dimension),
             _ => true,
         }
     }
@@ -461,9 +446,13 @@ pub static WORDS: &[Word] = &[
     number("mz", M::Node(OfNode::Mz), D::Moment, "moment of the reaction about z, in space"),
     number("sx", M::Stress(OfStress::X), D::Stress, "stress along x"),
     number("sy", M::Stress(OfStress::Y), D::Stress, "stress along y"),
+    number("sz", M::Stress(OfStress::Z), D::Stress, "stress along z, in space"),
     number("sxy", M::Stress(OfStress::Xy), D::Stress, "shear stress"),
-    number("s1", M::Stress(OfStress::Larger), D::Stress, "larger principal stress in the plane"),
-    number("s2", M::Stress(OfStress::Smaller), D::Stress, "smaller principal stress in the plane"),
+    number("syz", M::Stress(OfStress::Yz), D::Stress, "shear stress, in space"),
+    number("sxz", M::Stress(OfStress::Xz), D::Stress, "shear stress, in space"),
+    number("s1", M::Stress(OfStress::First), D::Stress, "largest principal stress (in the plane of the two there)"),
+    number("s2", M::Stress(OfStress::Second), D::Stress, "second principal stress"),
+    number("s3", M::Stress(OfStress::Third), D::Stress, "third principal stress, in space"),
     number("mises", M::Stress(OfStress::Mises), D::Stress, "equivalent stress of von Mises"),
     number("limit", M::Load(OfLoad::Limit), D::None, "limit of a load"),
     number("safety", M::Load(OfLoad::Safety), D::None, "limit of a load over its present value"),

@@ -1,4 +1,4 @@
-//! Stresses of membranes, and the state over the whole structure.
+//! Stresses of membranes and solids, and the state over the whole structure.
 
 use super::facts::Facts;
 use super::value::NoValue;
@@ -7,20 +7,6 @@ use crate::answer::stress::{Stress, StressPlace};
 use crate::fem::{MembraneStress, NodeStress};
 use crate::model::quantity::OfStress;
 use crate::model::structure::Structure;
-
-impl OfStress {
-    /// Of a stress, force per area, tension > 0.
-    pub fn of(self, stress: &Stress) -> f64 {
-        match self {
-            OfStress::X => stress.sx,
-            OfStress::Y => stress.sy,
-            OfStress::Xy => stress.sxy,
-            OfStress::Larger => stress.s1,
-            OfStress::Smaller => stress.s2,
-            OfStress::Mises => stress.mises,
-        }
-    }
-}
 
 /// A state over the whole structure: at every node, in every element and pair.
 pub struct Field<'a> {
@@ -41,17 +27,19 @@ pub struct Field<'a> {
 impl Facts<'_> {
     pub(super) fn at_node(&self, which: OfStress, node: &str) -> Result<f64, NoValue> {
         let at = self.node(node)?;
+        let dimension = self.structure()?.0.dimension;
         let found = self.node_stresses()?.into_iter().find(|stress| stress.node == at);
-        let found = found.ok_or_else(|| NoValue(format!("no plate, quad or triangle at node {node}")))?;
-        Ok(which.of(&Stress::new(StressPlace::Node(node.to_owned()), found.stress)))
+        let found = found.ok_or_else(|| NoValue(format!("no plate, quad, triangle or solid at node {node}")))?;
+        Ok(Stress::new(dimension, StressPlace::Node(node.to_owned()), found.stress).value(which))
     }
 
     pub(super) fn in_element(&self, which: OfStress, name: &str) -> Result<f64, NoValue> {
-        let element = self.structure()?.0.element_named(name);
+        let structure = self.structure()?.0;
+        let element = structure.element_named(name);
         let element = element.ok_or_else(|| NoValue(format!("no element {name}")))?;
         let found = self.element_stresses()?.into_iter().find(|stress| stress.element == element);
         let found = found.ok_or_else(|| self.missing())?;
-        Ok(which.of(&Stress::new(StressPlace::Element(name.to_owned()), found.stress)))
+        Ok(Stress::new(structure.dimension, StressPlace::Element(name.to_owned()), found.stress).value(which))
     }
 
     fn node_stresses(&self) -> Result<Vec<NodeStress>, NoValue> {
@@ -64,7 +52,7 @@ impl Facts<'_> {
         Ok(main.element_stresses(structure, self.displacements()?, &self.factors))
     }
 
-    /// The stresses at the nodes of plates, quads and triangles, then those in the elements; empty where there are none.
+    /// The stresses at the nodes of membranes and solids, then those in the elements; empty where there are none.
     pub fn stresses(&self) -> Vec<Stress> {
         let (Ok((structure, _)), Ok(nodes), Ok(elements)) =
             (self.structure(), self.node_stresses(), self.element_stresses())
@@ -75,7 +63,7 @@ impl Facts<'_> {
         let inside = elements
             .into_iter()
             .filter_map(|at| Some((StressPlace::Element(structure.element_name(at.element)?), at.stress)));
-        at_nodes.chain(inside).map(|(place, stress)| Stress::new(place, stress)).collect()
+        at_nodes.chain(inside).map(|(place, stress)| Stress::new(structure.dimension, place, stress)).collect()
     }
 
     /// The state over the whole structure.

@@ -19,7 +19,7 @@ pub enum Exported {
     Members,
     /// Reactions of supports and springs
     Reactions,
-    /// Stresses at the nodes of plates, quads and triangles
+    /// Stresses at the nodes of plates, quads, triangles and solids
     Stresses,
     /// Resultants of the edge contacts
     Resultants,

@@ -235,7 +235,7 @@ impl Session {
         let rows: Vec<Value> = at_nodes.map(|stress| json!(stress)).collect();
         if rows.is_empty() {
             return Err(CommandError::Refused(
-                "no stresses: the structure has no plates, quads or triangles".to_owned(),
+                "no stresses: the structure has no plates, quads, triangles or solids".to_owned(),
             ));
         }
         Ok(rows)
