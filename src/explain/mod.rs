@@ -18,6 +18,7 @@ pub mod ray;
 pub mod remedy;
 pub mod rigid;
 pub mod sentence;
+mod sliding;
 pub mod tableau;
 pub mod ties;
 pub mod unpressed;

@@ -13,6 +13,7 @@ use super::mode::{Mode, mode, pair_words};
 use super::motions::FreeMotions;
 use super::proof::{BUDGET, Certificate};
 use super::remedy::digits;
+use super::sliding::sliding;
 use crate::answer::record::{Direction, PairDirection, Ray, RayClass, Verdict};
 use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::enumerate::{Enumeration, enumerate};
@@ -242,13 +243,15 @@ impl RayReport {
         }
     }
 
-    /// A collapse on Coulomb's cone where the run on the polygon ended in an answer: the motion of its certificate.
+    /// A collapse on Coulomb's cone where the run on the polygon ended in an answer: the motion of its certificate, where
+    /// pairs that slip stay closed.
     pub fn of_certificate(problem: &ContactProblem, certificate: Certificate) -> RayReport {
+        let direction = sliding(problem, &certificate.direction).unwrap_or_else(|| certificate.direction.clone());
         RayReport {
             verdict: Some(Verdict::Certified),
-            powers: powers(problem, &certificate.direction),
-            certificate: Some(certificate.clone()),
-            ..RayReport::of_motion(RayClass::Mechanism, certificate.direction)
+            powers: powers(problem, &direction),
+            certificate: Some(certificate),
+            ..RayReport::of_motion(RayClass::Mechanism, direction)
         }
     }
 

@@ -80,6 +80,8 @@ impl Prepared {
         if !certified && system.is_in_space() {
             if rules.are_default() {
                 solved = self.retry_in_space(&problem, rules, solved, watch)?;
+            } else {
+                self.compare_in_space(&problem, rules, &mut solved, watch)?;
             }
         } else if !certified && rules.are_default() {
             solved = job.retry(solved)?;

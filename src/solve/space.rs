@@ -94,4 +94,25 @@ impl Prepared {
         }
         Ok(ladder.with_history(on_polygon.unwrap_or(last)))
     }
+
+    /// Covering and ties that the user chose have failed: says whether the default ones do better.
+    pub(super) fn compare_in_space(
+        &self,
+        problem: &ContactProblem,
+        rules: Rules,
+        solved: &mut Solved,
+        watch: &dyn Watch,
+    ) -> Result<(), SolveError> {
+        let default = Rules { facets: rules.facets, cone: rules.cone, ..Rules::default() };
+        let mut other = self.attempt_contact(problem, (default, Extent::Whole), watch)?;
+        if !other.stands(problem.cone) {
+            other = self.retry_in_space(problem, default, other, watch)?;
+        }
+        let words = format!("covering {}, tie-break {}", default.covering, default.tie_break);
+        solved.say(&match other.stands(problem.cone) {
+            true => format!(" The default rules ({words}) find an answer in {} pivots.", other.pivot_count()),
+            false => format!(" The default rules ({words}) find no answer either."),
+        });
+        Ok(())
+    }
 }

@@ -161,7 +161,13 @@ pub fn write_friction(out: &mut dyn Write, path: &FrictionPath, units: &Units, s
 pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style: &Style) -> io::Result<()> {
     let name = &limit.name;
     let Some(factor) = limit.factor else {
-        let text = format!("no limit was found: {}", limit.end_sentence());
+        let text = match limit.bracket {
+            Some([answer, none]) if limit.is_bracketed() => {
+                let (low, high) = (exact(answer.min(none)), exact(answer.max(none)));
+                format!("the limit lies between {name} = {low} and {high}: {}", limit.end_sentence())
+            }
+            _ => format!("no limit was found: {}", limit.end_sentence()),
+        };
         return style.paragraph(out, Role::Plain, &text);
     };
     let safety = match limit.safety {

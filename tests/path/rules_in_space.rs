@@ -67,3 +67,20 @@ fn sweeps_under_other_facets_or_another_cone_are_other_sweeps() {
     assert_eq!(hashes[0], hash(Rules::default()));
     assert!(hashes[0] != hashes[1] && hashes[0] != hashes[2] && hashes[1] != hashes[2], "{hashes:?}");
 }
+
+/// Where chosen rules end in a ray the default ones are run to say whether they do better: on a foot that Coulomb's cone
+/// cannot hold they do not, on one held by springs (R = 1) they do. `ones` takes more friction than there is for f > 1.
+#[test]
+fn chosen_rules_are_compared_with_the_default_ones() {
+    let mut stiffness = vec![vec![0.0; 3]; 3];
+    (0..3).for_each(|row| stiffness[row][row] = 1.0);
+    let case = Case::json(json!({
+        "solver": { "covering": "ones" },
+        "contact_system": {
+            "pairs": ["c1"], "tangents": 2, "stiffness": stiffness, "friction": [3],
+            "loads": { "lift": { "vector": [-1, -2, 0.5] } } } }));
+    let answer = case.solve(&[]);
+    let ray = answer.ray.as_ref().expect("a ray of `ones`");
+    let said = "The default rules (covering cohesive, tie-break lexicographic) find an answer in";
+    assert!(ray.explanation.contains(said), "{}", ray.explanation);
+}

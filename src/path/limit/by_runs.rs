@@ -1,7 +1,7 @@
 //! The limit of a load in space: no path leads there, since slips turn; runs of their own bracket it, each with an answer
 //! on Coulomb's cone or a collapse that is certified on it.
 
-use super::record::{BESIDE, Limit, beside, size};
+use super::record::{Limit, beside, size};
 use crate::path::edge::{Run, narrowed};
 use crate::path::load_parameter::LoadParameter;
 use crate::path::start::PathError;
@@ -11,6 +11,8 @@ use crate::solve::Case;
 const GROWTH: f64 = 4.0;
 /// … up to this multiple of its present size.
 const MOST: f64 = 1e9;
+/// A bracket of no more than this share of its place is a limit: some 1e-5 beyond it a collapse is certified on the cone.
+const CLOSE: f64 = 2e-5;
 
 /// The limit of a load case or load parameter, outwards from its present value, or from 0 where there is no answer.
 pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathError> {
@@ -61,7 +63,7 @@ pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathErr
     limit.bracket = Some([answer.value, collapse.value]);
     let (prepared, _) = there(collapse.value)?;
     let found = Case { prepared: &prepared, ..case }.solve()?.answer.ray;
-    if (answer.value - collapse.value).abs() > BESIDE * size(collapse.value, present) {
+    if (answer.value - collapse.value).abs() > CLOSE * size(collapse.value, present) {
         limit.collapse = found;
         return Ok(limit);
     }

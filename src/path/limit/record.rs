@@ -103,6 +103,11 @@ impl Limit {
         self.collapse.as_ref().and_then(|collapse| collapse.verdict).is_some_and(Verdict::is_proof)
     }
 
+    /// Whether the limit is proved to lie in its bracket; that of a path ends in a proof.
+    pub fn is_bracketed(&self) -> bool {
+        self.bracket.is_some() && (self.path.is_some() || self.is_proved())
+    }
+
     /// What runs of their own say of the limit, in a sentence.
     pub fn confirmation(&self) -> String {
         match self.bracket {
