@@ -51,11 +51,11 @@ impl<'a> Bimatrix<'a> {
     pub fn with_values(&self) -> Lcp<f64> {
         let n = self.lcp.size();
         let mut matrix = vec![vec![0.0; n + 2]; n + 2];
-        for i in 0..n {
-            for j in 0..n {
-                matrix[i][j] = self.lcp.base[(i, j)] / -self.lcp.q[i];
+        for (i, &player) in self.player.iter().enumerate() {
+            for (j, entry) in matrix[i][..n].iter_mut().enumerate() {
+                *entry = self.lcp.base[(i, j)] / -self.lcp.q[i];
             }
-            let value = n + self.player[i];
+            let value = n + player;
             (matrix[i][value], matrix[value][i]) = (-1.0, 1.0);
         }
         let mut q = vec![0.0; n];
