@@ -17,8 +17,8 @@ use crate::model::structure::Structure;
 use crate::model::vector::length;
 use crate::watch::Watch;
 
-/// R and RF are taken from the f64 factor as they are where rounding can hardly cost them more than this share of the
-/// energy: R of that of a dislocation, RF of that of a load.
+/// R and RF are taken from the f64 factor where rounding costs them no more than this share; see
+/// [`MainSystem::loss`].
 const MOST_LOSS: f64 = 1e-12;
 
 impl MainSystem {
@@ -39,23 +39,12 @@ impl MainSystem {
         self.refine_if_lost(structure, watch)
     }
 
-    /// Where rounding may take too much of R or RF: RF and displacements in doubled precision, which costs a few solutions.
-    /// R too, which costs one for each of its columns, where its own dislocations lose that much and it is measured to be
-    /// wrong: what a load loses, whose field bends the whole structure, says nothing of R.
+    /// R and RF in doubled precision where rounding takes too much of them.
     pub(super) fn refine_if_lost(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
-        let (of_dislocation, of_loads) = self.amplifications();
+        self.amplification = self.worst_amplification();
         // Each term of uᵀ K u is off by ε at random, and there are as many as unknowns.
-        let terms = (self.elimination.masters().max(1) as f64).sqrt();
-        let is_lost = |amplification: f64| f64::EPSILON * amplification / terms > MOST_LOSS;
-        self.amplification = of_dislocation.max(of_loads);
-        if !is_lost(self.amplification) {
-            return Ok(());
-        }
-        if is_lost(of_dislocation) && !self.stiffness_is_right(structure, watch)? {
-            return self.condense_doubled(structure, watch);
-        }
-        self.amplification = 1.0;
-        self.take_loads_doubled(structure, watch)
+        let loss = f64::EPSILON * self.amplification / (self.elimination.masters().max(1) as f64).sqrt();
+        if loss > MOST_LOSS { self.condense_doubled(structure, watch) } else { Ok(()) }
     }
 
     fn condense_doubled(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
@@ -109,9 +98,9 @@ impl MainSystem {
         }
     }
 
-    /// Σ|u||K||u| over uᵀ K u: of a random dislocation that is not a motion of the kernel, and the largest of the load cases on
-    /// the main system.
-    fn amplifications(&self) -> (f64, f64) {
+    /// Σ|u||K||u| over uᵀ K u, the largest of a random dislocation that is not a motion of the kernel and of the load
+    /// cases on the main system.
+    fn worst_amplification(&self) -> f64 {
         let k = self.joints.len();
         let mut state = 0.37;
         let mut z = DVector::from_fn(k, |i, _| {
@@ -120,20 +109,19 @@ impl MainSystem {
             if size > 0.0 { (state - 0.5).signum() / size.sqrt() } else { 0.0 }
         });
         z -= &self.z * (self.z.transpose() * &z);
-        let cases = self.f.len();
-        let factors = DMatrix::<f64>::identity(cases, cases);
-        let none = vec![0.0; cases];
-        let loads = (0..cases).map(|case| (&factors.as_slice()[case * cases..][..cases], DVector::zeros(k)));
-        let states: Vec<(&[f64], DVector<f64>)> = std::iter::once((&none[..], z)).chain(loads).collect();
+        let none = vec![0.0; self.f.len()];
+        let mut fields = vec![self.plain_displacements(&none, &z)];
+        for case in 0..self.f.len() {
+            let mut factors = none.clone();
+            factors[case] = 1.0;
+            fields.push(self.plain_displacements(&factors, &DVector::zeros(k)));
+        }
         let amplification = |u: &Vec<f64>| {
             let terms = dot(&self.k.times_absolute(u), &u.iter().map(|u| u.abs()).collect::<Vec<_>>());
             let energy = dot(&self.k.times(u), u).max(f64::EPSILON * terms);
             if terms > 0.0 { terms / energy } else { 0.0 }
         };
-        // An estimate needs no field to its last digits; a few share each look at the factor.
-        let some = states.chunks(4).map(|states| self.unrefined_displacements(states));
-        let found: Vec<f64> = some.flat_map(|fields| fields.iter().map(amplification).collect::<Vec<_>>()).collect();
-        (found[0], found[1..].iter().copied().fold(0.0, f64::max))
+        fields.iter().map(amplification).fold(0.0, f64::max)
     }
 
     /// Adds eigenvectors of R that cost no energy in K to the kernel.

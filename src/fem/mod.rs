@@ -55,7 +55,6 @@ mod kernel;
 mod kinematics;
 mod loads;
 mod loose;
-mod measured_loss;
 mod null_space;
 mod order;
 mod outline;

@@ -5,7 +5,6 @@ mod closed_forms;
 mod ill_conditioned;
 mod kernel;
 mod large;
-mod measured_loss;
 mod ordering;
 mod refusals;
 mod rigid;
