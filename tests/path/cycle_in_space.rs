@@ -44,7 +44,7 @@ fn a_cycle_begins_with_given_slips() {
     for (line, part) in [
         ("cycle pull-x 0..6 from slider=1", "how far has slider slipped along t1 and along t2"),
         ("cycle pull-x 0..6 from 1", "expected 2 slips behind `from`, two for each pair"),
-        ("cycle pull-x 0..6 from slider=1,2,3", "`3` is no slip"),
+        ("cycle pull-x 0..6 from slider=1,2,3", "`3` is not a slip"),
     ] {
         let refusal = report(&mut session, line).expect_err(line);
         assert!(refusal.contains(part), "{line}: {refusal}");
