@@ -71,7 +71,8 @@ fn combinations_and_stages_are_shown_one_by_one() {
 #[test]
 fn events_of_a_stage_stand_beside_their_times() {
     let text = embedded::text("bearing-two-way").unwrap();
-    let stages = r#", "stages": [{ "weight": 1, "pull-x": 1 }, { "weight": 1, "pull-x": 1, "pull-y": 1 }] }"#;
+    // It slips from t = f W / Fx = 2/3 on.
+    let stages = r#", "stages": [{ "weight": 1 }, { "weight": 1, "pull-x": 1 }] }"#;
     let text = text.trim_end().strip_suffix('}').unwrap().trim_end().to_owned() + stages;
     let scenario =
         crate::model::load::load_text("stages.json", &text, None).unwrap_or_else(|problems| panic!("{problems}"));
