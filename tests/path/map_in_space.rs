@@ -67,7 +67,7 @@ fn the_polygon_has_a_map_of_its_own() {
     }
     let map = report(&mut session, "map X -1.5..1.4 Y -1.2..1.3").expect("a map");
     near(&region(&map, Some("stick"))["area"], 4.0, 1e-8);
-    assert!(map["notes"].to_string().contains("answers of their own"), "{}", map["notes"]);
+    assert!(map["notes"].to_string().contains("solved one by one"), "{}", map["notes"]);
 }
 
 /// z = −(X, Y)(1 − 1/|(X, Y)|) where that is beyond 1: at X = 2 the slip along t1 is −1 at Y = 0, farther elsewhere, and −3/2
