@@ -17,8 +17,8 @@ use crate::model::structure::Structure;
 use crate::model::vector::length;
 use crate::watch::Watch;
 
-/// R and RF are taken from the f64 factor where rounding costs them no more than this share; see
-/// [`MainSystem::loss`].
+/// R and RF are taken from the f64 factor as they are where rounding can hardly cost them more than this share of the
+/// energy: R of that of a dislocation, RF of that of a load.
 const MOST_LOSS: f64 = 1e-12;
 
 impl MainSystem {
@@ -39,12 +39,21 @@ impl MainSystem {
         self.refine_if_lost(structure, watch)
     }
 
-    /// R and RF in doubled precision where rounding takes too much of them.
+    /// Where rounding may take too much of R or RF: RF and displacements in doubled precision, which costs a few solutions.
+    /// R too, which costs one for each of its columns, where it is measured to be wrong: the field of a load may bend the whole
+    /// structure where those of the joints do not.
     pub(super) fn refine_if_lost(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
         self.amplification = self.worst_amplification();
         // Each term of uᵀ K u is off by ε at random, and there are as many as unknowns.
-        let loss = f64::EPSILON * self.amplification / (self.elimination.masters().max(1) as f64).sqrt();
-        if loss > MOST_LOSS { self.condense_doubled(structure, watch) } else { Ok(()) }
+        let terms = (self.elimination.masters().max(1) as f64).sqrt();
+        if f64::EPSILON * self.amplification / terms <= MOST_LOSS {
+            return Ok(());
+        }
+        if !self.stiffness_is_right(structure, watch)? {
+            return self.condense_doubled(structure, watch);
+        }
+        self.amplification = 1.0;
+        self.take_loads_doubled(structure, watch)
     }
 
     fn condense_doubled(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {

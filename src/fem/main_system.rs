@@ -72,7 +72,8 @@ pub struct MainSystem {
     pub(super) settled: Vec<Option<Vec<f64>>>,
     /// K in doubled precision, where f64 loses too much of the structure's stiffness.
     pub(super) doubled: Option<Arc<SymmetricSparse<Doubled>>>,
-    /// Σ|u||K||u| over uᵀ K u, the largest that was met: how much R and RF lose to rounding.
+    /// Σ|u||K||u| over uᵀ K u, the largest that was met: how much R and RF lose to rounding; 1 where what loses was made in
+    /// doubled precision.
     pub(super) amplification: f64,
     pub(super) factor: Arc<Factor>,
     pub(super) c: Vec<Coupling>,

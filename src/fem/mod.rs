@@ -55,6 +55,7 @@ mod kernel;
 mod kinematics;
 mod loads;
 mod loose;
+mod measured_loss;
 mod null_space;
 mod order;
 mod outline;

@@ -158,7 +158,7 @@ impl Refinement<'_> {
     }
 
     /// Gᵀ (K u − f).
-    fn joint_forces(&self, u: &[Doubled], f: &[f64]) -> DVector<f64> {
+    pub(super) fn joint_forces(&self, u: &[Doubled], f: &[f64]) -> DVector<f64> {
         let mut force = self.k.times(u);
         for (force, f) in std::iter::zip(&mut force, f) {
             *force -= Doubled::from(*f);

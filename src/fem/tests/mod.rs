@@ -5,6 +5,7 @@ mod closed_forms;
 mod ill_conditioned;
 mod kernel;
 mod large;
+mod measured_loss;
 mod ordering;
 mod refusals;
 mod rigid;
