@@ -262,6 +262,8 @@ impl Path<'_> {
                 };
                 continue;
             }
+            // How far z goes within a step: where a slip begins or ends nothing but what was left of it stands beside the place.
+            let size = next.as_ref().map_or(0.0, |next| next.step.z.amax()).max(here.step.z.amax());
             let (last, next) = match next {
                 Some(next) => self.narrowed(&stepper, here, next)?,
                 None => (here, None),
@@ -271,7 +273,6 @@ impl Path<'_> {
             }
             let (next, jump) = match next {
                 Some(next) => {
-                    let size = next.step.z.amax().max(last.step.z.amax());
                     let moved = (&next.step.z - &last.step.z).amax();
                     (next, moved > JUMP * size)
                 }
