@@ -9,12 +9,12 @@ use super::find::{near, number};
 use crate::common::lines::{read, report, text};
 use crate::common::scenario_text;
 
-/// A block of weight 2 with f = 1/2 pushed by (X, Y), on springs of `k` each way or on none: it stands where |(X, Y)| ≤ 1.
+/// A block of weight 2 with f = 1/2 pushed by (X, Y), on springs of `k` in all directions or rigid: it stands where |(X, Y)| ≤ 1.
 fn block(k: f64) -> Session {
     read(&scenario_text(json!({
         "parameters": { "X": 0.1, "Y": 0.2, "f": 0.5 },
         "contact_system": {
-            "pairs": ["a"], "tangents": 2, "stiffness": [[1, 0, 0], [0, k, 0], [0, 0, k]], "friction": ["f"],
+            "pairs": ["a"], "tangents": 2, "stiffness": [[k, 0, 0], [0, k, 0], [0, 0, k]], "friction": ["f"],
             "loads": { "weight": { "factor": 2, "vector": [1, 0, 0] }, "x": { "factor": "X", "vector": [0, 1, 0] },
                        "y": { "factor": "Y", "vector": [0, 0, 1] } } }
     })))
