@@ -122,7 +122,7 @@ fn edit_opens_the_editor_of_the_user_and_reads_again() {
     command.env("VISUAL", format!("'{}' --wait", editor.display()));
     let mut terminal = Terminal::spawn(command, 80, 24);
     terminal.prompt();
-    terminal.ask("edit", "`save beam.json` gives it one");
+    terminal.ask("edit", "gives it one");
     terminal.ask("load b.json", "trivial");
     terminal.send("edit\r");
     terminal.wait("the editor", |screen| screen.contains("EDITING --wait"));
