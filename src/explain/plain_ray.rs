@@ -105,10 +105,10 @@ impl PlainRay {
     }
 }
 
-/// How a bimatrix game is stated so that Lemke's algorithm ends in an equilibrium.
-const GAME: &str = " This is a bimatrix game with M = [0 A; C 0]. Lemke's algorithm finds an equilibrium where it is stated \
-                    with the players' values u and v as unknowns, A, C > 0: rows A y - u e, C x - v e, eᵀx - 1, eᵀy - 1 \
-                    for z = (x, y, u, v).";
+/// What a bimatrix game has for an answer; told where that failed.
+const GAME: &str = " This is a bimatrix game with M = [0 A; C 0]. With the players' values u and v as unknowns, rows A y - u e, \
+                    C x - v e, eᵀx - 1, eᵀy - 1 for z = (x, y, u, v), Lemke's algorithm ends in an equilibrium where A, C > 0; \
+                    it is an answer here only where u and v are > 0.";
 
 /// Whether z_r can grow without making any w, or p, fall, where w_r has made room for p: M_rr = 0 and the rest of its
 /// column ≥ 0.
