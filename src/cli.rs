@@ -134,7 +134,7 @@ fn run(cli: Cli) -> Result<u8, Failure> {
 /// Help and version go to stdout and are not errors.
 fn usage(error: &clap::Error, arguments: &[OsString]) -> u8 {
     let status = u8::try_from(error.exit_code()).unwrap_or(2);
-    // the message quotes the arguments: it is made again from what of them may be shown
+    // the message quotes the arguments: it is made again from their printable form
     let clean = arguments.iter().map(|word| printable::line(&word.to_string_lossy()));
     let shown = Cli::try_parse_from(clean).err().filter(|shown| shown.kind() == error.kind());
     if status != 0 && asks_for_json(arguments) {
@@ -159,7 +159,7 @@ fn usage(error: &clap::Error, arguments: &[OsString]) -> u8 {
     }
 }
 
-/// Help, version or an error of usage where nothing but ASCII can be shown.
+/// Help, version or a usage error where only ASCII can be shown.
 fn write_ascii(shown: &clap::Error, style: &Style) -> io::Result<()> {
     let text: String = shown.render().to_string().lines().map(|line| style.text(line) + "\n").collect();
     if shown.use_stderr() { io::stderr().write_all(text.as_bytes()) } else { io::stdout().write_all(text.as_bytes()) }

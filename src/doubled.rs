@@ -2,9 +2,9 @@
 //!
 //! A [`Doubled`] is the unevaluated sum of two f64, some 32 digits, by error-free transformations (Dekker 1971;
 //! Hida, Li, Bailey, *Algorithms for quad-double precision floating point arithmetic*, 2001). Residuals of equations
-//! that cancel are computed in it, and the stiffnesses they need: an f64 stiffness of a bar in thousands of elements has
-//! lost the bar's own stiffness in the rounding of its entries. A [`Sum`] is the quicker way where numbers are only added
-//! up; it knows the magnitude of its terms as well.
+//! that cancel are computed in it, and so are the stiffnesses they need: the f64 stiffness matrix of a bar divided into
+//! thousands of elements has lost the stiffness of the whole bar in the rounding of its entries. A [`Sum`] is faster
+//! where numbers are only added up, and it knows the magnitude of its terms as well.
 
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -25,11 +25,11 @@ pub trait Real:
     + ClosedDivAssign
     + Neg<Output = Self>
 {
-    /// Square root; of a number ≥ 0.
+    /// Square root of a number ≥ 0.
     fn sqrt(self) -> Self;
     /// The nearest f64.
     fn to_f64(self) -> f64;
-    /// a − b without rounding first.
+    /// a − b, formed in this type: a [`Doubled`] keeps what the difference in f64 rounds away.
     fn difference(a: f64, b: f64) -> Self;
 }
 
@@ -61,7 +61,7 @@ impl Doubled {
         Doubled { hi, lo: a.mul_add(b, -hi) }
     }
 
-    /// What the nearest f64 leaves.
+    /// What rounding to the nearest f64 leaves.
     pub fn tail(self) -> f64 {
         self.lo
     }
@@ -188,8 +188,8 @@ impl One for Doubled {
     }
 }
 
-/// A sum of numbers and products, carried with an error of the order of ε² Σ |terms| (Ogita, Rump & Oishi, *Accurate sum
-/// and dot product*, 2005).
+/// A sum of numbers and products, carried with an error of the order of ε² Σ |terms| (Ogita, Rump & Oishi, *Accurate
+/// sum and dot product*, 2005).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sum {
     high: f64,

@@ -24,21 +24,21 @@
 //!
 //! # Units and signs
 //!
-//! Nothing is converted: lengths and forces are in the units of the scenario, angles and rotations in radians, and all other
-//! units follow (R in force per length, a work in force · length, a stress in force per area, friction without one). Where
-//! numbers are scaled, as in the dictionary of the pivots, or are shares, pixels, bytes, their comment says so. Vectors are
-//! (x, y, z) in global axes, right-handed; what has no z in the plane is 0 there. x_n > 0 presses, z_n > 0 is open, x_τ acts
-//! on the second side, N > 0 and stresses > 0 are tension, reactions act on the structure, moments and rotations are
-//! counter-clockwise seen from the tip of their axis; docs/signs.md has all of them.
+//! Nothing is converted: lengths and forces are in the units of the scenario, angles and rotations in radians, and all
+//! other units follow (R in force per length, a work in force · length, a stress in force per area, friction without
+//! one). Where numbers are scaled, as in the dictionary of the pivots, or are shares, pixels, bytes, their comment says
+//! so. Vectors are (x, y, z) in global axes, right-handed; in the plane their z is 0. x_n > 0 presses, z_n > 0 is open,
+//! x_τ acts on the second side, N > 0 and stresses > 0 are tension, reactions act on the structure, moments and
+//! rotations are counter-clockwise seen from the tip of their axis; docs/signs.md has all of them.
 //!
-//! # The way of the data
+//! # Data flow
 //!
 //! scenario file → [`model`] → [`fem`] (R, RF) → [`contact`] (LCP) → [`lcp`] (pivots) → [`answer`] → [`explain`],
 //! [`solve`], [`path`] → [`view`], [`export`] → [`session`] → [`repl`], [`tui`], [`cli`]. A module imports only from
 //! those before it; only the last three read or write the terminal.
 
 #![forbid(unsafe_code)]
-// A page of a module may name what stands inside it.
+// Module pages may link to private items.
 #![allow(rustdoc::private_intra_doc_links)]
 
 pub mod answer;

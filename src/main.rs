@@ -29,7 +29,7 @@ fn finish(start: Start, screen: Option<tui::Start>) -> u8 {
     cli::finish(converse(start, screen), &errors)
 }
 
-/// The command line and the full screen by turns, with one session.
+/// The command line and the full screen in turns, with one session.
 fn converse(start: Start, mut screen: Option<tui::Start>) -> io::Result<u8> {
     let Start { mut session, style, signals, .. } = start;
     if repl::is_interactive() {

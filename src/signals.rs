@@ -10,16 +10,16 @@ use signal_hook::{flag, low_level};
 
 use crate::watch::Watch;
 
-/// Longer computations show their progress.
+/// Computations that take longer show their progress.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Between two lines of progress.
+/// Time between two updates of the progress line.
 const PACE: Duration = Duration::from_millis(200);
 
-/// Exit status where the memory ended, after the message of the allocator: a limit was reached.
+/// Exit status where memory ran out, after the allocator's message: a limit was reached.
 const OUT_OF_MEMORY: i32 = 4;
 
-/// A limit of the system is an error like others. A file that reaches the limit of its size fails to be written, as on a
-/// full disk. Where the memory ends in spite of all estimates, the program ends with a message and a status, not with a
+/// Makes a limit of the system an error like any other: writing a file beyond the limit of its size fails as on a full
+/// disk, and where memory runs out in spite of all estimates the program ends with a message and a status, not with a
 /// core dump.
 ///
 /// # Errors
@@ -30,7 +30,7 @@ pub fn survive_limits() -> io::Result<()> {
     Ok(())
 }
 
-/// What the user or the system asked for since it was looked at.
+/// What the user or the system has asked for since it was last looked at.
 #[derive(Clone, Debug, Default)]
 pub struct Signals {
     interrupt: Arc<AtomicBool>,
@@ -39,7 +39,7 @@ pub struct Signals {
     quit: Arc<AtomicBool>,
     stop: Arc<AtomicBool>,
     resumed: Arc<AtomicBool>,
-    /// Something of our own waits for the line editor to stop waiting.
+    /// Another part of the program wants the line editor to stop waiting for keys.
     knocks: Arc<AtomicBool>,
     /// Whether the terminal is as the shell left it, so that the program may be stopped where it stands.
     cooked: Arc<AtomicBool>,
@@ -76,7 +76,7 @@ impl Signals {
         self.hangup.load(Ordering::SeqCst)
     }
 
-    /// Takes a terminal that cannot be read or written any more as a hang-up, unless another signal is known.
+    /// Treats a terminal that can no longer be read or written as a hang-up, unless another signal is known.
     pub fn note_hangup(&self) {
         if !self.must_end() {
             self.hangup.store(true, Ordering::SeqCst);
@@ -106,9 +106,9 @@ impl Signals {
         self.interrupt.load(Ordering::SeqCst) || self.must_end()
     }
 
-    /// While it is kept the terminal is not as the shell left it, and a stop waits for [`Signals::take_stop`].
+    /// While the result is kept, the terminal is not as the shell left it and a stop waits for [`Signals::take_stop`].
     pub fn raw(&self) -> RawTerminal {
-        // what came before was carried out by the system
+        // what came before was dealt with by the system
         self.stop.store(false, Ordering::SeqCst);
         self.resumed.store(false, Ordering::SeqCst);
         self.cooked.store(false, Ordering::SeqCst);
@@ -120,7 +120,7 @@ impl Signals {
         self.stop.swap(false, Ordering::SeqCst)
     }
 
-    /// Whether the program was stopped and goes on.
+    /// Whether the program was stopped and has been resumed.
     pub fn take_resumed(&self) -> bool {
         self.resumed.swap(false, Ordering::SeqCst)
     }
@@ -146,7 +146,7 @@ impl Signals {
         self.knocks.store(true, Ordering::SeqCst);
     }
 
-    /// Whether somebody knocked and was not heard yet.
+    /// Whether a knock has not been taken yet.
     pub fn has_knocked(&self) -> bool {
         self.knocks.load(Ordering::SeqCst)
     }
@@ -156,7 +156,7 @@ impl Signals {
         self.knocks.swap(false, Ordering::SeqCst)
     }
 
-    /// Wakes a line editor that waits for a key when the program has to end or to stop, or somebody knocked.
+    /// Wakes a line editor that waits for a key when the program has to end or to stop, or when somebody knocked.
     ///
     /// The editor listens to SIGINT only; it is raised again and again, as one may arrive just before it listens.
     pub fn wake_editor(&self) {
@@ -219,7 +219,7 @@ impl TerminalWatch {
         }
     }
 
-    /// Takes the line of progress away again.
+    /// Removes the progress line.
     pub fn clear(&self) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         if state.last.take().is_some() {

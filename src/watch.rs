@@ -1,11 +1,11 @@
-//! A look from outside into long work: progress, and whether to stop.
+//! How long work is watched from outside: its progress, and whether it should stop.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// Hears of progress and may ask to stop. Both are called often and return at once.
 pub trait Watch: Sync {
-    /// `what` is being done; `fraction` of it (0 … 1) is ready.
+    /// `what` is being done; `fraction` of it (0 … 1) is finished.
     fn progress(&self, what: &str, fraction: f64) {
         let _ = (what, fraction);
     }
@@ -26,7 +26,7 @@ pub struct Quiet;
 
 impl Watch for Quiet {}
 
-/// Goes on until then: for work that hears of no watch.
+/// Continue until `end`: for work that is given no watch.
 pub fn until(end: Instant) -> ControlFlow<()> {
     if Instant::now() < end { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }

@@ -25,7 +25,7 @@ fn refused(why: impl Into<String>) -> io::Error {
     io::Error::other(why.into())
 }
 
-/// Whether something can be read to its end: a regular file, or what another program writes.
+/// Why something cannot be read to its end; `None` for a regular file and for a pipe.
 fn refusal(metadata: &Metadata) -> Option<&'static str> {
     let kind = metadata.file_type();
     if kind.is_dir() {
@@ -60,14 +60,14 @@ pub fn open(path: &Path) -> io::Result<File> {
 /// The bytes of a file or a pipe, at most [`LARGEST`].
 ///
 /// # Errors
-/// Those of [`open`] and of reading; too large, or too large for the memory there is.
+/// Those of [`open`] and of reading; larger than [`LARGEST`], or than the memory that is left.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let metadata = file.metadata()?;
     if metadata.is_file() && metadata.len() > LARGEST {
         return Err(too_large(LARGEST));
     }
-    // Of a pipe, and of what the system makes up as it is read, the length is 0.
+    // A pipe, or a file that the system makes up as it is read, has length 0.
     let mut bytes = Vec::new();
     bytes.try_reserve_exact(metadata.len() as usize).map_err(|_| no_room(0))?;
     read_up_to(LARGEST, file, bytes)
@@ -93,7 +93,7 @@ pub fn text_of(bytes: Vec<u8>) -> io::Result<String> {
 /// Everything `from` gives, at most [`LARGEST`] bytes.
 ///
 /// # Errors
-/// Those of reading; too much, or too much for the memory there is.
+/// Those of reading; more than [`LARGEST`], or than the memory that is left.
 pub fn read_all(from: impl Read) -> io::Result<Vec<u8>> {
     read_up_to(LARGEST, from, Vec::new())
 }

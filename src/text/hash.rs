@@ -11,12 +11,12 @@ impl Default for Hash {
 }
 
 impl Hash {
-    /// Of a text.
+    /// The hash of a text.
     pub fn of(text: &str) -> Hash {
         Hash::default().and(text.as_bytes())
     }
 
-    /// With more bytes behind those it has.
+    /// The hash with more bytes appended.
     #[must_use]
     pub fn and(self, bytes: &[u8]) -> Hash {
         Hash(bytes.iter().fold(self.0, |hash, byte| {

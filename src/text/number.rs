@@ -46,7 +46,7 @@ pub fn measured(value: f64, unit: Option<&str>) -> String {
     with_unit(&numbers.concat(), unit)
 }
 
-/// Measured values for sentences, which share a unit: in metres where all can be read there, else in mm or µm.
+/// Measured values for a sentence, in a unit they share: metres where all of them read well in it, else mm or µm.
 pub fn measured_alike<'u>(values: &[f64], unit: Option<&'u str>) -> (Vec<String>, Option<&'u str>) {
     let is_small = |value: &f64| figures(*value, DIGITS).is_some_and(|(_, exponent)| exponent < -4);
     let (times, unit) = match values.iter().fold(0.0, |most: f64, value| most.max(value.abs())) {
@@ -65,7 +65,7 @@ pub fn heading(name: &str, unit: Option<&str>) -> String {
     }
 }
 
-/// Zero and what is not a number.
+/// Zero, and what is not finite.
 pub fn simple(value: f64) -> String {
     if value == 0.0 { "0" } else { "n/a" }.to_owned()
 }
@@ -75,8 +75,8 @@ pub fn third(exponent: i32) -> i32 {
     exponent.div_euclid(3) * 3
 }
 
-/// The first `digits` figures of |value|, rounded, and the exponent of ten of the first one; `None` for zero and what is
-/// not finite. Rounding first: 99999.6 is 1.0000e5 and belongs to the next power.
+/// The first `digits` figures of |value|, rounded, and the exponent of ten of the first one; `None` for zero and what
+/// is not finite. Rounding first: 99999.6 is 1.0000e5 and belongs to the next power.
 pub fn figures(value: f64, digits: usize) -> Option<(String, i32)> {
     if value == 0.0 || !value.is_finite() {
         return None;
@@ -86,7 +86,7 @@ pub fn figures(value: f64, digits: usize) -> Option<(String, i32)> {
     Some((mantissa.chars().filter(char::is_ascii_digit).collect(), exponent.parse().ok()?))
 }
 
-/// Figures with the sign of `value` and their point, the first of them standing for 10^exponent.
+/// Figures with the sign of `value` and a decimal point, the first of them standing for 10^exponent.
 pub fn placed(value: f64, figures: &str, exponent: i32) -> String {
     let sign = if value < 0.0 { "-" } else { "" };
     let before = exponent + 1;

@@ -86,7 +86,7 @@ pub fn text(text: &str, color: bool) -> String {
     plain
 }
 
-/// The way out of every face: what is written through it is [`text`].
+/// The output of every face: what is written through it passes [`text`].
 pub struct Printable<W> {
     out: W,
     color: bool,
@@ -95,7 +95,7 @@ pub struct Printable<W> {
 }
 
 impl<W: Write> Printable<W> {
-    /// To `out`; with `color` the colours of this program pass.
+    /// A writer to `out`; with `color` the colours of this program pass.
     pub fn new(out: W, color: bool) -> Self {
         Printable { out, color, begun: Vec::new() }
     }
