@@ -79,8 +79,8 @@ impl<'a> Whole<'a> {
         basis.active.iter().map(|&k| self.parts(k)).collect()
     }
 
-    /// z over all rows and p of a basis whose active rows of M z + d p are `right`; `None` where its equations are not as
-    /// many as its unknowns, or singular.
+    /// z over all rows, and p, of a basis in whose active rows M z + d p is `right`; `None` where there are more or
+    /// fewer equations than unknowns, or where they are singular.
     fn solve(&self, basis: &Basis, right: Vec<f64>) -> Option<(Vec<f64>, f64)> {
         if basis.z.len() + usize::from(basis.p) != right.len() {
             return None;
@@ -117,7 +117,7 @@ pub fn vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<Point> {
 }
 
 /// The point of a basis after one step of Newton's method from `point`, whose w (of all rows, better known than from
-/// the data) is given; no sign is looked at. `None` where the equations are singular.
+/// the data) is given; signs are not checked. `None` where the equations are singular.
 pub fn corrected(lcp: &MirroredLcp, basis: &Basis, point: &Point, w: &[f64]) -> Option<Point> {
     let whole = Whole::new(lcp);
     let (step, step_p) = whole.solve(basis, basis.active.iter().map(|&row| -w[row]).collect())?;

@@ -1,12 +1,12 @@
-//! Bimatrix games among LCPs: M = [0 A; C 0] ≥ 0, in whatever order of its rows, and q < 0.
+//! Bimatrix games among LCPs: M = [0 A; C 0] ≥ 0, its rows in any order, and q < 0.
 //!
-//! Lemke's algorithm ends in a ray at its first pivot there, whatever d. With the values u and v of the two players as unknowns
-//! it does find an equilibrium (Cottle, Pang & Stone, "The Linear Complementarity Problem", §1.4, §4.4):
+//! Lemke's algorithm ends in a ray at its first pivot there, whatever d. With the values u and v of the two players as
+//! unknowns it does find an equilibrium (Cottle, Pang & Stone, "The Linear Complementarity Problem", §1.4, §4.4):
 //!
 //! ```text
 //!     A y − u e ≥ 0 ⟂ x,   C x − v e ≥ 0 ⟂ y,   eᵀx ≥ 1 ⟂ u,   eᵀy ≥ 1 ⟂ v
 //! ```
-//! whose x / v and y / u are an answer of the LCP where q = −e. Other q are made that by scaling the rows.
+//! whose x / v and y / u are an answer of the LCP where q = −e. Any other q becomes −e by scaling the rows.
 
 use super::mirrored::MirroredLcp;
 use super::problem::{Lcp, Scale};
@@ -14,12 +14,13 @@ use super::problem::{Lcp, Scale};
 /// An LCP that is a game.
 pub struct Bimatrix<'a> {
     lcp: &'a MirroredLcp,
-    /// The player whose strategy each row is, 0 or 1.
+    /// The player, 0 or 1, to whom the strategy of each row belongs.
     player: Vec<usize>,
 }
 
 impl<'a> Bimatrix<'a> {
-    /// `None` where the LCP is none: two sets of rows with zero diagonal blocks are found as two colours of a graph.
+    /// The LCP as a game; `None` where it is not one: the two sets of rows with zero diagonal blocks are found as the
+    /// two colours of a graph.
     pub fn of(lcp: &'a MirroredLcp) -> Option<Bimatrix<'a>> {
         let (n, m) = (lcp.size(), &lcp.base);
         let has_mirrors = lcp.mirrors.iter().any(Option::is_some);

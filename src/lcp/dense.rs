@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 const STRIP: usize = 128;
 
 /// Lets faer compute on one thread, so that the bits of a result do not depend on the number of threads; parallel
-/// factorizations of the sizes met here are no faster (method §5).
+/// factorizations of the sizes met here are no faster.
 pub(crate) fn compute_sequentially() {
     faer::set_global_parallelism(Par::Seq);
 }
@@ -31,7 +31,8 @@ pub(crate) fn add_product(target: &mut [f64], left: &[f64], right: &[f64], rows:
 }
 
 /// Lower triangle of the trailing square −= P Pᵀ: `columns` are the last columns of an n × n matrix, from number `from`
-/// on, `panel` some before them, of which P is the rows from `from` on. What is above the diagonal is left undefined.
+/// on, `panel` some columns before them; P is the rows of `panel` from `from` on. What is above the diagonal is left
+/// undefined.
 pub(crate) fn subtract_square(columns: &mut [f64], panel: &[f64], n: usize, from: usize) {
     if columns.is_empty() || panel.is_empty() {
         return;

@@ -4,7 +4,7 @@
 //!   x_B = value + A x_N          N rows, N + 1 columns
 //! ```
 //! A pivot on (r, c) zeroes row r and column c and then adds u vᵀ with u_r = 1, v_c = 1/pivot: no cancellation
-//! (method §5); how such steps are collected and multiplied out is the matter of [`super::updated_matrix`].
+//! (method §5); [`super::updated_matrix`] says how such steps are collected and multiplied out.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -95,7 +95,7 @@ impl Dictionary {
         dictionary.rebuild(lcp).then_some(dictionary)
     }
 
-    /// The load increment `factor` times as large as so far.
+    /// Multiplies the load increment by `factor`.
     pub(crate) fn rescale(&mut self, factor: f64) {
         let Place::Column(c) = self.place_p else {
             debug_assert!(false, "rescale needs p nonbasic");
@@ -115,7 +115,8 @@ impl Dictionary {
             Some(mirror) if self.turned[i] => lcp.mirror_start(i, mirror).1,
             _ => lcp.covering[i],
         };
-        // Of w = M z + d p with the nonbasic w held at 0: a nonbasic w enters its column as w − d p.
+        // The column of w = M z + d p with the nonbasic w held at 0: p moves them by d p, which their own columns take
+        // back.
         let held: Vec<(usize, f64)> = self
             .column
             .iter()
@@ -161,7 +162,7 @@ impl Dictionary {
         self.entries.entry(r, c)
     }
 
-    /// The columns of nonbasic w take waiting steps over together, where entries of many of them will be asked for.
+    /// Lets the columns of nonbasic w take over the waiting steps together, before entries of many of them are read.
     pub(crate) fn settle_w(&mut self) {
         let columns = self.column.iter().enumerate().filter(|column| matches!(column.1, Slot::W(_)));
         self.entries.settle(columns.map(|(c, _)| c));
@@ -235,7 +236,7 @@ impl Dictionary {
         row
     }
 
-    /// Turns a couple round whose w is basic and whose z is nonbasic: the row becomes its mirror, the column of z
+    /// Turns round a couple whose w is basic and whose z is nonbasic: the row becomes its mirror, the column of z
     /// changes sign.
     pub(crate) fn turn(&mut self, lcp: &MirroredLcp, i: usize) {
         let (Place::Row(r), Place::Column(c)) = (self.place_w[i], self.place_z[i]) else {

@@ -1,4 +1,4 @@
-//! Dictionaries after random pivots, whatever waits in them, beside the same built afresh from the data.
+//! Dictionaries after random pivots, whatever steps wait in them, compared with the same built afresh from the data.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use super::{Dictionary, Place, Slot};
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::problem::Scale;
 
-/// Contact of so many pairs with a well-conditioned matrix, a third of them frictionless.
+/// Contact of `pairs` pairs with a well-conditioned matrix, a third of the pairs frictionless.
 fn contact(rng: &mut ChaCha8Rng, pairs: usize) -> MirroredLcp {
     let rubbing = pairs - pairs / 3;
     let size = pairs + rubbing;
@@ -47,8 +47,8 @@ fn load(rng: &mut ChaCha8Rng, lcp: &mut MirroredLcp) {
     }
 }
 
-/// One random step of those that Lemke's algorithm and paths make: a pivot in column c, the mirror of a basic or of the
-/// entering reserve in the place of it, or another load increment while p is nonbasic.
+/// One random step of the kinds that Lemke's algorithm and paths make: a pivot in column c, the mirror of a basic or of
+/// the entering reserve in its place, or another load increment while p is nonbasic.
 fn step(rng: &mut ChaCha8Rng, lcp: &mut MirroredLcp, dictionary: &mut Dictionary, last: &mut usize) {
     // Mostly near the last column, as contact changes; p comes and goes.
     let width = dictionary.column.len();

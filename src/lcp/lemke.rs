@@ -103,7 +103,7 @@ impl SchemeEngine {
     /// The entry of p (pivot 0), or the trivial end.
     fn start(&mut self) -> Step<f64> {
         let lcp = Arc::clone(&self.stand.lcp);
-        // q and d of all rows, mirrors included. q itself is data, a mirror's is a sum that carries its rounding.
+        // q and d of all rows, mirrors included. q itself is data; that of a mirror is a sum and carries its rounding.
         let mut rows: Vec<(Slot, bool, f64, f64)> =
             (0..lcp.size()).map(|i| (Slot::W(i), false, lcp.q[i], lcp.covering[i])).collect();
         for (i, mirror) in lcp.mirrors.iter().enumerate() {
@@ -245,7 +245,7 @@ impl Engine for SchemeEngine {
             return self.nothing_blocks(c);
         }
         let mut chosen = self.choose(c, &tied, false);
-        // A pivot on a small rate needs a row of the dictionary that is right beside it.
+        // A pivot on a small rate needs a row of the dictionary whose errors are small beside that rate.
         if self.stand.is_suspicious(c, &tied[chosen..=chosen])
             && self.stand.refine_if_doubtful(c, &tied[chosen..=chosen])
         {

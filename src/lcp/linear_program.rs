@@ -1,7 +1,7 @@
-//! Linear programs, some of whose rows may bound the length of others (second-order cones), solved by the interior-point
-//! crate Clarabel and, where its accuracy does not suffice, refined.
+//! Linear programs, some of whose rows may bound the length of others (second-order cones), solved by the
+//! interior-point crate Clarabel and, where its accuracy does not suffice, refined.
 //!
-//! What comes back is a proposal in f64, never a proof: whoever claims something on it verifies it from the data.
+//! What comes back is a proposal in f64, never a proof: whoever bases a claim on it verifies it from the data.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
@@ -106,7 +106,7 @@ impl LinearProgram {
         }
     }
 
-    /// Solves it within so many seconds.
+    /// Solves it within this many seconds.
     pub fn solve(&self, seconds: f64) -> Outcome {
         let (n, equal) = (self.cost.len(), self.equal.len());
         let linear = equal + self.at_most.len();
@@ -156,8 +156,8 @@ impl LinearProgram {
     }
 
     /// The optimum near `x`, which misses it by about 1/`zoom`: the same program in the magnified difference, so that
-    /// the tolerance of the crate counts 1/`zoom` (iterative refinement of linear programs, Gleixner et al. 2016).
-    /// `None` where that gives no point.
+    /// the tolerance of the crate counts for only 1/`zoom` (iterative refinement of linear programs, Gleixner et al.
+    /// 2016). `None` where that gives no point.
     pub fn refined(&self, x: &[f64], zoom: f64, seconds: f64) -> Option<Vec<f64>> {
         let mut near = LinearProgram { cost: self.cost.clone(), ..LinearProgram::default() };
         let rest = |row: &Row| row.rest(x) * zoom;
@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn the_farthest_point_of_a_disk_is_on_its_rim() {
-        // max 3a + 4b, |(a, b)| ≤ r = 1: (0.6, 0.8), where the tolerance of the crate leaves the root of it.
+        // max 3a + 4b, |(a, b)| ≤ r = 1: (0.6, 0.8), which the crate's tolerance leaves uncertain by its square root.
         let mut program = LinearProgram::default();
         let [a, b, r] = [-3.0, -4.0, 0.0].map(|cost| program.variable(cost));
         program.equal(vec![(r, 1.0)], 1.0);
@@ -286,7 +286,7 @@ mod tests {
 
     #[test]
     fn refinement_reaches_the_last_digits() {
-        // max t ≤ 1/3 · 1e-9 in company of entries of size 1: the first answer cannot know t.
+        // max t ≤ 1/3 · 1e-9 beside entries of size 1: the first answer cannot know t.
         let mut program = LinearProgram::default();
         let (t, x) = (program.variable(-1.0), program.variable(0.0));
         program.at_most(vec![(t, 3.0), (x, -1.0)], -1.0 + 1e-9);

@@ -33,8 +33,8 @@ pub struct Mirror {
 }
 
 impl Mirror {
-    /// 2 f w_n + `shift` b + e p − w_i for row i, from the w of the primary rows: the value of w_i' where `shift` = 1, its
-    /// rate or an entry of its row where `shift` = 0.
+    /// 2 f w_n + `shift` b + e p − w_i for row i, from the w of the primary rows: the value of w_i' where `shift` = 1,
+    /// its rate or an entry of its row where `shift` = 0.
     #[inline]
     pub(crate) fn reflect<T: Real>(&self, i: usize, w: impl Fn(usize) -> T, p: f64, shift: f64) -> T {
         let normal = self.normal.map_or_else(T::zero, &w);
@@ -57,7 +57,7 @@ pub struct MirroredLcp {
     pub whole: Vec<usize>,
     /// Mirror of each primary row.
     pub mirrors: Vec<Option<Mirror>>,
-    /// Against what rounding noise is judged, over the primary rows and columns.
+    /// The sizes against which rounding noise is judged, over the primary rows and columns.
     pub scale: Scale,
     /// Number of rows n of the whole LCP.
     pub full_size: usize,

@@ -17,7 +17,8 @@
 //! assert!((run.point.z[0] - 4.0 / 3.0).abs() < 1e-15 && (run.point.z[1] - 7.0 / 3.0).abs() < 1e-15);
 //! ```
 //!
-//! [`exact::tableau`] is generic over its numbers and obviously right; [`lemke`] is the fast engine on [`mirrored`] rows.
+//! [`exact::tableau`] is generic over its numbers and obviously right; [`lemke`] is the fast engine on [`mirrored`]
+//! rows.
 
 pub mod basis;
 pub mod basis_solution;

@@ -53,15 +53,15 @@ fn sizes(lcp: &MirroredLcp) -> Sizes {
     Sizes {
         q: vec![q; lcp.size()],
         d: vec![d; lcp.size()],
-        // t answers to a response of this size in the rows that the load increment moves most.
+        // The t that makes a response of size 1 in the rows that the load increment moves most.
         p_per_force: if d > 0.0 { row / d } else { 1.0 },
         // t itself never blocks: it is watched by its target.
         p: 0.0,
     }
 }
 
-/// The factor of which the load increment of `new` is a multiple of that of `old`, up to rounding: a slider that
-/// moves on. The increments are differences of loads, so rounding is judged against the loads too.
+/// The factor by which the load increment of `new` is a multiple of that of `old`, up to rounding: a slider that moves
+/// on. The increments are differences of loads, so rounding is judged against the loads too.
 fn multiple(new: &MirroredLcp, old: &MirroredLcp) -> Option<f64> {
     if new.covering.is_empty() {
         return None;
@@ -116,9 +116,9 @@ impl Parametric {
         Some(Parametric { stand, rule: TieRule::Lexicographic(order), scheme, driver: Slot::P })
     }
 
-    /// Takes the next load increment after a path that ended at its target. q and the constants of the mirrors are those
-    /// of that target, M and the mirrors' friction are the same; only the increment (d, e) is new. `false` where the
-    /// dictionary cannot be carried over.
+    /// Takes the next load increment after a path that ended at its target. q and the constants of the mirrors are
+    /// those of that target, M and the mirrors' friction are the same; only the increment (d, e) is new. `false` where
+    /// the dictionary cannot be carried over.
     pub fn reload(&mut self, lcp: Arc<MirroredLcp>) -> bool {
         if self.stand.column_of(Slot::P).is_none() {
             return false;
@@ -184,9 +184,9 @@ impl Parametric {
         }
     }
 
-    /// The vertex where `row` of the whole LCP has both its variables at zero: as the dictionary holds it, refined from the
-    /// data; solved afresh where that does not agree with them, or agrees only because displacements are so large that their
-    /// rounding hides the load.
+    /// The vertex where `row` of the whole LCP has both its variables at zero: as the dictionary holds it, refined from
+    /// the data; solved afresh where that does not agree with them, or agrees only because displacements are so large
+    /// that their rounding hides the load.
     fn knot(&self, row: usize) -> Point {
         let sharp = if self.stand.blur() <= BLURRED { self.stand.sharp_point() } else { None };
         let point = sharp.or_else(|| vertex(&self.stand.lcp, &self.knot_basis(row)));
@@ -244,8 +244,8 @@ impl Parametric {
         self.stand.fresh = false;
     }
 
-    /// The rate of t along the present column and its natural size; `None`: so far above the noise that nothing hangs
-    /// on its last digits.
+    /// The rate of t along the present column and its natural size; `None`: so far above the noise that its last digits
+    /// decide nothing.
     fn faint_t_rate(&self, c: usize) -> Option<(f64, f64)> {
         let stand = &self.stand;
         if self.driver == Slot::P {
@@ -296,8 +296,8 @@ impl Parametric {
         ray
     }
 
-    /// Follows the path; `observer` is called after every pivot with t and may break. At the target it stands on the LCP
-    /// of the target.
+    /// Follows the path; `observer` is called after every pivot with t and may break. At the target it stands on the
+    /// LCP of the target.
     pub fn follow(&mut self, reach: Reach, observer: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Path {
         let point = self.point_at(0.0).unwrap_or_else(|| self.stand.point());
         let mut knots = Some(vec![Breakpoint {

@@ -205,7 +205,7 @@ impl PivotState {
     }
 
     /// |Δp| along column c, against which the noise of the rows is judged. Where Δp is noise itself, no part of what it
-    /// gives to a row counts: a row that nothing but p moves would be told to fall otherwise.
+    /// gives to a row counts: otherwise a row that only p moves would seem to fall.
     fn p_rate_size(&self, c: usize) -> f64 {
         let rate = self.dictionary.rate(Slot::P, c, &self.column).abs();
         if rate <= NOISE * self.rate_size(Slot::P, self.rate_total(c), 0.0) { rate / NOISE } else { rate }
@@ -253,7 +253,7 @@ impl PivotState {
         (rows, smallest)
     }
 
-    /// Of each row: how far the variable of column c can grow before the row is at zero, infinite where it does not
+    /// For each row, how far the variable of column c can grow before the row is at zero, infinite where it does not
     /// fall.
     fn ratios_of_rows(&self, c: usize, ratios: &mut Vec<f64>) {
         let d = &self.dictionary;
@@ -369,7 +369,7 @@ impl PivotState {
         };
         for (i, mirror) in lcp.mirrors.iter().enumerate() {
             if let (Some(mirror), Variable::W(k)) = (mirror, self.variable(Slot::W(i), true)) {
-                // Turned round it is the other member of the couple that is held.
+                // Of a couple turned round the dictionary holds the other member.
                 point.w[k] = mirror.reflect(i, w, point.p, 1.0);
             }
         }

@@ -5,7 +5,7 @@ use crate::lcp::exact::scalar::Scalar;
 
 /// A value or rate counts as zero below this multiple of its natural size (method §4, "Zero"), see [`Scale`].
 pub const NOISE: f64 = 256.0 * f64::EPSILON;
-/// Rounds of equilibration: the logarithms of the factors come twice as near in each.
+/// Rounds of equilibration: each halves the distance of the logarithms of the factors from their limits.
 const EQUILIBRATIONS: usize = 8;
 /// p at a ray at most this multiple of the load, or of the terms of each row, is a normal end, flagged marginal.
 pub const MARGINAL: f64 = 1e-12;
@@ -21,8 +21,8 @@ pub struct Scale {
     pub row: Vec<f64>,
     /// One entry per column of the LCP.
     pub column: Vec<f64>,
-    /// Size of what has to be balanced, where q holds other numbers besides: a friction bound of 1e15 is not a load. What
-    /// is left of p is judged against it. A bare LCP has none.
+    /// Size of what has to be balanced, where q holds other numbers besides: a friction bound of 1e15 is not a load.
+    /// What is left of p is judged against it. A bare LCP has none.
     pub load: Option<f64>,
 }
 
@@ -82,8 +82,9 @@ impl<T: Scalar> Lcp<T> {
     }
 }
 
-/// Whether the p that is left at the end of a run is an answer's: beside the load, where its size is known. Of a bare LCP
-/// the rows may be of any sizes: there in every row that has no w to spare for it, beside the terms of that row.
+/// Whether the p that is left at the end of a run is small enough for an answer: compared with the load, where its size
+/// is known. The rows of a bare LCP may be of any size: there p is compared, in every row that has no w to spare for
+/// it, with the terms of that row.
 pub(super) fn as_good_as_nothing(
     point: &Point,
     load: Option<f64>,

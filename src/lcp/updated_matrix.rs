@@ -9,11 +9,12 @@ use std::sync::Arc;
 use super::dense::add_columns;
 use super::waiting_steps::{Combination, WaitingSteps};
 
-/// Columns that take batches over together: so many that products run at full speed, and few enough to lie close to
+/// Columns that take batches over together: enough for products to run at full speed, and few enough to lie close to
 /// the one that was asked for. Measured from 8 to 64 at 1000 pairs.
 const BLOCK: usize = 64;
 
-/// Steps that are kept, per column of the matrix: then all blocks take them over. They take twice the room of the matrix.
+/// Steps that are kept, per column of the matrix; beyond that all blocks take them over. They take twice the room of
+/// the matrix.
 const KEPT: usize = 2;
 
 /// See the module.
@@ -121,7 +122,7 @@ impl UpdatedMatrix {
         let mut x = vec![0.0; self.columns];
         let oldest = terms.iter().map(|term| self.taken(term.0)).min().unwrap_or(self.full.len());
         for batch in oldest..=self.full.len() {
-            // Columns join where the batches begin that they have not taken over.
+            // A column joins at the first batch that it has not taken over.
             let joining = || terms.iter().filter(|term| self.taken(term.0) == batch);
             add_columns(&mut sum, joining().map(|&(j, factor)| (self.stored(j), factor)));
             for &(j, factor) in joining() {

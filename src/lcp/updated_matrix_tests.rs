@@ -39,8 +39,8 @@ impl Plain {
     }
 }
 
-/// Random steps on a matrix of the given size; only `read` columns are looked at after each, so that others fall behind.
-/// Returns whether the run went past as many steps as may wait.
+/// Random steps on a matrix of the given size; only `read` columns are looked at after each, so that others fall
+/// behind. Returns whether the run went past as many steps as may wait.
 fn walk(rng: &mut ChaCha8Rng, (rows, columns): (usize, usize), read: usize) -> bool {
     let start = DMatrix::from_fn(rows, columns, |_, _| rng.random_range(-0.5..0.5));
     let mut plain = Plain(start.clone());
@@ -109,7 +109,7 @@ fn walk(rng: &mut ChaCha8Rng, (rows, columns): (usize, usize), read: usize) -> b
 #[test]
 fn waiting_steps_read_as_if_made_at_once() {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
-    // One block of columns that all batches are at once multiplied out in, and several that fall behind differently.
+    // One block of columns, in which every batch is multiplied out at once, and several that fall behind differently.
     for (size, read) in [((9, 11), 3), ((12, 70), 1), ((40, 140), 0)] {
         let whole = (0..30).filter(|_| walk(&mut rng, size, read)).count();
         assert!(whole > 5, "{whole} runs of {size:?} went past the steps that may wait");

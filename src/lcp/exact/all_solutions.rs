@@ -2,9 +2,9 @@
 //!
 //! Branch and bound over the couples: w_i = 0 or z_i = 0. At every node the linear program that is left (all signs, the
 //! couples decided so far) is kept feasible in exact arithmetic ([`Polyhedron`]); where it is empty the node ends, and
-//! that is a proof. Where all couples are decided, or nothing but one point is left, the whole set of solutions of
-//! that basis is described by its corners and directions, singular or not. So the list is complete whenever the search
-//! came to its end.
+//! that is a proof. Where all couples are decided, or only one point is left, the whole set of solutions of that basis
+//! is described by its corners and directions, singular or not. So the list is complete whenever the search came to its
+//! end.
 
 use num_rational::BigRational;
 
@@ -91,8 +91,8 @@ pub struct Progress {
     pub found: usize,
 }
 
-/// Finds every solution; `rows` are those of M with q as the last column. `observer` hears of the progress before every step and stops the search with false; what was
-/// found until then is returned as incomplete.
+/// Finds every solution; `rows` are those of M with q as the last column. `observer` hears of the progress before every
+/// step and stops the search by returning false; what was found until then is returned as incomplete.
 pub fn all_solutions(rows: WholeRows, observer: &mut dyn FnMut(Progress) -> bool) -> Solutions {
     let n = rows.rows.len();
     let mut search = Search {

@@ -31,7 +31,7 @@ struct Bound {
 
 impl Bound {
     const ZERO: Bound = Bound { m: 0.0, e: 0 };
-    /// Of a number of which nothing is known.
+    /// The bound of a number of which nothing is known.
     const INFINITE: Bound = Bound { m: f64::INFINITY, e: 0 };
 
     fn new(mut m: f64, mut e: i64) -> Self {

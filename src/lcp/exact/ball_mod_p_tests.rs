@@ -1,4 +1,4 @@
-//! Balls hold true values; zeros are found; too little precision is admitted.
+//! Balls contain the true values; zeros are found; too little precision is reported.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

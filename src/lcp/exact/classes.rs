@@ -7,9 +7,9 @@ use num_traits::{One, Signed, Zero};
 use crate::lcp::exact::dyadic::{WholeRows, rational_rows};
 use crate::lcp::exact::scalar::BigInt;
 
-/// Most rows whose minors are gone through.
+/// Largest number of rows for which all principal minors are examined.
 const MOST_MINORS: usize = 10;
-/// Most rows whose definiteness is told exactly.
+/// Largest number of rows for which definiteness is decided exactly.
 const MOST_DEFINITE: usize = 100;
 
 /// Why every q has an answer.
@@ -34,8 +34,8 @@ impl SolvableClass {
     }
 }
 
-/// The class of M, where it is one of these and that is cheap to tell. `go_on` is asked before every step of an
-/// elimination and may stop it.
+/// The class of M, where it belongs to one of these and that is cheap to find out. `go_on` is asked before every step
+/// of an elimination and may stop it.
 pub fn solvable_class(matrix: &DMatrix<f64>, go_on: &mut dyn FnMut() -> bool) -> Option<SolvableClass> {
     let n = matrix.nrows();
     if (0..n).any(|i| matrix[(i, i)] <= 0.0) {

@@ -7,7 +7,7 @@ use num_traits::{Signed, Zero};
 
 use crate::lcp::exact::polyhedron::{GoOn, Polyhedron};
 
-/// More bases than this of one polyhedron are not gone through.
+/// No more than this many bases of one polyhedron are visited.
 const MOST_BASES: usize = 20_000;
 
 /// The polyhedron is the hull of its corners, plus any non-negative combination of its directions.
@@ -28,8 +28,8 @@ impl Corners {
     }
 }
 
-/// Goes through the feasible bases of a feasible polyhedron; `variables` are those whose values are told. A polyhedron
-/// that holds a whole line has no corner: the line counts as two directions and is left out of the search.
+/// Goes through the feasible bases of a feasible polyhedron; `variables` are those whose values are returned. A
+/// polyhedron that holds a whole line has no corner: the line counts as two directions and is left out of the search.
 pub fn corners(start: &Polyhedron, variables: &[usize], go_on: &mut GoOn) -> Corners {
     let mut found = Corners { complete: true, ..Corners::default() };
     let mut start = start.clone();

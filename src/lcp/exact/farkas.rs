@@ -3,8 +3,8 @@
 //!
 //! The linear program is an LCP itself, with the skew matrix [[0, M], [−Mᵀ, 0]] over (y, z): Lemke's algorithm ends at
 //! a feasible z or in a ray whose y-part is such a vector. The run in f64 only *proposes* it: which entries are
-//! positive, and which columns are tight. These equations are then solved in integers and every sign is told exactly;
-//! only then it is a proof. For smaller problems the exact dictionary decides where f64 cannot.
+//! positive, and which columns are tight. These equations are then solved in integers and every sign is checked
+//! exactly; only then is it a proof. For smaller problems the exact dictionary decides where f64 cannot.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ use crate::lcp::ratio_test::TieRule;
 const MOST_PIVOTS: usize = 20_000;
 /// Entries below this times the largest, and sums below this times their terms, are proposed to be zero.
 const NOTHING: f64 = 1e-9;
-/// Pivots of the exact dictionary times n³ that are made to decide what f64 could not.
+/// Largest product of n³ and the number of pivots that the exact dictionary makes to decide what f64 could not.
 const MOST_EXACT: usize = 20_000_000;
 
 /// The proof that {z ≥ 0 : M z + q ≥ 0} is empty, verified in integers.
@@ -43,7 +43,6 @@ pub struct Farkas {
 
 /// Looks for the proof; `None`: nothing is proved, there may be a feasible z or not. `go_on` is asked now and then.
 pub fn farkas(matrix: &DMatrix<f64>, q: &DVector<f64>, go_on: &mut dyn FnMut() -> bool) -> Option<Farkas> {
-    // y times a row, not times the whole number it stands for.
     let whole = WholeRows::of_lcp(matrix, q);
     if let Some(y) = proposed(matrix, q, go_on)
         && let Some(found) = confirm(&whole, matrix, &y, go_on)
@@ -78,7 +77,7 @@ fn proposed(matrix: &DMatrix<f64>, q: &DVector<f64>, go_on: &mut dyn FnMut() -> 
     }
 }
 
-/// Solves for the proposed y exactly and tells every sign.
+/// Solves for the proposed y exactly and checks every sign.
 fn confirm(
     whole: &WholeRows,
     matrix: &DMatrix<f64>,
@@ -95,8 +94,8 @@ fn confirm(
             sum.abs() <= NOTHING * size
         })
         .collect();
-    // The largest y_i is given; of the others and of the tight columns as many as are independent decide. The numbers of
-    // `whole` are rows of M times a scale: unknowns y_i / scale_i.
+    // The largest y_i is prescribed; of the others and of the tight columns as many are taken as are independent. The
+    // numbers of `whole` are rows of M times a scale: unknowns y_i / scale_i.
     let given = *support.iter().max_by(|a, b| proposed[**a].total_cmp(&proposed[**b]))?;
     let others: Vec<usize> = support.iter().copied().filter(|&i| i != given).collect();
     let coefficient = |j: usize, i: usize| matrix[(i, j)] * proposed[i];
@@ -116,7 +115,7 @@ fn confirm(
     verified(whole, &y)
 }
 
-/// As many columns and rows as make a regular matrix, by elimination in f64 with full pivoting.
+/// A largest set of columns and rows that make a regular matrix, by elimination in f64 with full pivoting.
 fn independent(
     columns: &[usize],
     rows: &[usize],

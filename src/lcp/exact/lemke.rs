@@ -46,7 +46,7 @@ pub struct Exact<'a> {
 
 impl<'a> Exact<'a> {
     /// An engine before the entry of p. All vectors and rows of `lcp` must have the length of q. `watch` may stop what
-    /// takes long between two pivots: the run once more with more bits, and the proof of its end.
+    /// takes long between two pivots: repeating the run with more bits, and proving its end.
     pub fn new(lcp: Lcp<BigRational>, rule: TieRule, watch: &'a dyn Watch) -> Self {
         let precision = 160 + 2 * lcp.size() as u32;
         let rows = lcp

@@ -1,5 +1,5 @@
-//! The engines without rounding: integers, rationals, and f64 with a bound of every error. They judge the engine in f64,
-//! stand in for it on small problems, and prove.
+//! The engines without rounding: integers, rationals, and f64 with a bound of every error. They judge the engine in
+//! f64, stand in for it on small problems, and prove.
 
 pub mod all_solutions;
 pub mod ball_mod_p;

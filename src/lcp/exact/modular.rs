@@ -103,7 +103,7 @@ impl LimbRow {
     pub fn dot(&self, y: &[u64]) -> BigInt {
         let mut sum = BigInt::default();
         for limbs in self.limbs.iter().rev() {
-            // Both halves of the products by themselves: no sum of so few overflows.
+            // Both halves of the products are summed separately: so few terms cannot overflow.
             let (mut low, mut high) = (0_i128, 0_i128);
             for ((limb, sign), y) in limbs.iter().zip(&self.sign).zip(y) {
                 let product = u128::from(*limb) * u128::from(*y);

@@ -8,7 +8,7 @@
 //! [fixed](Polyhedron::fix) at zero: it leaves the dictionary for good. After every change the dictionary is made
 //! feasible again by the least-index rule, which cannot cycle; a row with a negative constant and no positive entry is
 //! the proof that nothing is left. No number is ever rounded, so every such statement is a proof about the data.
-//! To write the proof down its share of the fixed variables is needed too: a dictionary that
+//! To write the proof down, the factors of the fixed variables are needed too: a dictionary that
 //! [keeps](Polyhedron::keep_fixed) them has it.
 
 use num_rational::BigRational;
@@ -43,19 +43,19 @@ pub struct Polyhedron {
     rows: Vec<Vec<BigInt>>,
     /// D.
     denominator: BigInt,
-    /// Of each variable: whether its sign is free.
+    /// For each variable, whether its sign is free.
     free: Vec<bool>,
-    /// Of each variable: what stands in the dictionary is this times the variable (≠ 0).
+    /// For each variable, the factor ≠ 0: what stands in the dictionary is the variable times this.
     scale: Vec<BigInt>,
     /// Whether fixed variables keep their columns.
     keeps: bool,
-    /// Of each variable: whether it is fixed and still has a column.
+    /// For each variable, whether it is fixed and still has a column.
     fixed: Vec<bool>,
 }
 
 impl Polyhedron {
-    /// `columns` nonbasic variables 0 … columns − 1 and one basic variable for each row of `given` (its coefficients and
-    /// its constant), numbered on from there; `free` of those whose sign is free. Not yet feasible.
+    /// `columns` nonbasic variables 0 … columns − 1 and one basic variable for each row of `given` (its coefficients
+    /// and its constant), numbered on from there; `free` of those whose sign is free. Not yet feasible.
     pub fn new(columns: usize, given: WholeRows, free: &[usize]) -> Self {
         let count = columns + given.rows.len();
         let mut is_free = vec![false; count];
@@ -83,7 +83,8 @@ impl Polyhedron {
         self
     }
 
-    /// Without the columns of fixed variables, and of those that are fixed from now on, as the search for corners needs it.
+    /// Without the columns of fixed variables, and of those that are fixed from now on, as the search for corners needs
+    /// it.
     #[must_use]
     pub fn without_fixed(mut self) -> Self {
         self.keeps = false;
@@ -93,9 +94,9 @@ impl Polyhedron {
         self
     }
 
-    /// Of an empty polyhedron: factors of variables (in the user's units) whose sum is a negative number, whatever
-    /// the values. Those of variables ≥ 0 are ≥ 0; fixed variables, where they are kept, may have any. `pinned` is
-    /// the variable whose fixing at zero was refused, if that emptied it.
+    /// For an empty polyhedron: factors of variables (in the user's units) whose sum is a negative number, whatever the
+    /// values. Those of variables ≥ 0 are ≥ 0; fixed variables, where they are kept, may have any. `pinned` is the
+    /// variable whose fixing at zero was refused, if that emptied it.
     pub fn contradiction(&self, pinned: Option<usize>) -> Option<Vec<(usize, BigInt)>> {
         let hopeless = self.hopeless_row().map(|row| (row, false));
         let refused = || {
@@ -116,8 +117,9 @@ impl Polyhedron {
         Some(std::iter::once(own).chain(others).filter(|(_, factor)| !factor.is_zero()).collect())
     }
 
-    /// Of a feasible polyhedron: factors ≥ 0 of variables whose sum is 0 whatever the values, > 0 for every column, so
-    /// that all these variables are 0; `None` where it is more than the present point. Columns of fixed variables must be kept.
+    /// For a feasible polyhedron: factors ≥ 0 of variables whose sum is 0 whatever the values, > 0 for every column, so
+    /// that all these variables are 0; `None` where the polyhedron is more than the present point. Columns of fixed
+    /// variables must be kept.
     pub fn only_point(&self, go_on: &mut GoOn) -> Option<Vec<(usize, BigInt)>> {
         let live: Vec<usize> = (0..self.nonbasic.len()).filter(|&c| !self.fixed[self.nonbasic[c]]).collect();
         if live.iter().any(|&c| self.free[self.nonbasic[c]]) {
@@ -310,8 +312,8 @@ impl Polyhedron {
         }
     }
 
-    /// [Fixes](Polyhedron::fix) variables at zero, one after the other as long as anything is left; beside the state the
-    /// one that was fixed last.
+    /// [Fixes](Polyhedron::fix) variables at zero, one after the other as long as anything is left; returns the state
+    /// and the variable that was fixed last.
     pub fn fix_all(&mut self, variables: impl IntoIterator<Item = usize>, go_on: &mut GoOn) -> (State, Option<usize>) {
         let mut last = None;
         for variable in variables {
@@ -329,7 +331,7 @@ impl Polyhedron {
         self.towards(row, &-BigInt::one())
     }
 
-    /// The column of least index along which the variable of `row`, whose sign this is, gets nearer to zero.
+    /// The column of least index along which the variable of `row`, whose sign is `sign`, gets nearer to zero.
     fn towards(&self, row: usize, sign: &BigInt) -> Option<usize> {
         (0..self.nonbasic.len())
             .filter(|&c| {

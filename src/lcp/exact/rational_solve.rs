@@ -81,7 +81,8 @@ pub fn solve(
     RationalSolution::Singular { rank, particular: consistent.then(|| spread(&particular, &basis.columns, k)) }
 }
 
-/// A basis of {x : `matrix` x = 0} (square), exact and proved complete; `None` when stopped. `progress` as in [`solve`].
+/// A basis of {x : `matrix` x = 0} (square), exact and proved complete; `None` when stopped. `progress` as in
+/// [`solve`].
 pub fn null_space(
     matrix: &[Vec<BigInt>],
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
@@ -228,7 +229,7 @@ struct Lifting {
 }
 
 impl Lifting {
-    /// Continues with nothing where it is singular modulo p.
+    /// Continues with `None` where it is singular modulo p.
     fn new(matrix: Vec<Vec<BigInt>>, p: Prime, go_on: &mut dyn FnMut() -> bool) -> ControlFlow<(), Option<Self>> {
         let k = matrix.len();
         let mut a: Vec<Vec<u64>> = matrix

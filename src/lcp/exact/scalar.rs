@@ -1,4 +1,4 @@
-//! The number types that the tableau can count with.
+//! The number types that the tableau can compute with.
 
 use std::cmp::Ordering;
 use std::fmt::Debug;

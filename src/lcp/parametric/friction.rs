@@ -19,11 +19,11 @@ impl Parametric {
         }
     }
 
-    /// The answer of the same scheme after a change of friction, f_i + `change`_i, per primary row; `extra` is what
-    /// the constants b_i of the LCP held so far exceed those of the problem by, halved (extra cohesion). The
-    /// dictionary stays that of the old friction: a slipping row's new w = 0 means w = extra − change·w_n in it,
-    /// a small system in the w_n of the slipping rows that is solved by iteration. `None` where the iteration does
-    /// not settle or the scheme does not hold.
+    /// The answer of the same scheme after a change of friction, f_i + `change`_i, per primary row; `extra` is half of
+    /// what the constants b_i of the present LCP exceed those of the problem by (extra cohesion). The dictionary stays
+    /// that of the old friction: a slipping row's new w = 0 means w = extra − change·w_n in it, a small system in the
+    /// w_n of the slipping rows that is solved by iteration. `None` where the iteration does not settle or the scheme
+    /// does not hold.
     pub fn at_friction(&mut self, change: &[f64], extra: &[f64]) -> Option<Point> {
         self.sharpen();
         // Slipping rows: their own column, and which of the `pressed` rows is that of their w_n (none in an open

@@ -1,4 +1,4 @@
-//! A path in a load parameter, as it is told: how far it goes, its breakpoints, why it ends.
+//! A path in a load parameter, as it is reported: how far it goes, its breakpoints, why it ends.
 
 use super::super::outcome::{Point, RayDirection};
 use super::super::variable::Variable;

@@ -1,4 +1,4 @@
-//! The watch over errors: the numbers of a stand against the data, their refinement, the dictionary built afresh.
+//! Guarding against errors: comparing the numbers of a state with the data, refining them, rebuilding the dictionary.
 
 use super::{Candidate, PivotState, SUSPICIOUS};
 use crate::doubled::{Doubled, Real};
@@ -21,8 +21,9 @@ impl PivotState {
         tied.fall / self.rate_size(tied.variable, self.rate_total(c), p_rate).max(f64::MIN_POSITIVE)
     }
 
-    /// Whether the decision on column c hangs on a rate so near the noise that the data must confirm it: a small residual
-    /// of the column does not show that a small rate in it is right. One such row is enough: it may be no row at all.
+    /// Whether the decision on column c depends on a rate so near the noise that the data must confirm it: a small
+    /// residual of the column does not show that a small rate in it is right. One such row is enough: its rate may be
+    /// nothing but noise.
     pub(crate) fn is_suspicious(&self, c: usize, tied: &[Candidate]) -> bool {
         !self.fresh && (tied.is_empty() || tied.iter().any(|tied| self.relative_fall(c, tied) <= SUSPICIOUS))
     }
@@ -58,8 +59,8 @@ impl PivotState {
     }
 
     /// All variables at the vertex, as true to the data as solving its equations afresh would make them: one step of
-    /// refinement with residuals in doubled precision squares the error of the dictionary, which is built afresh where it
-    /// exceeds [`DRIFT`]. `None` where what comes of it does not agree with the data to rounding.
+    /// refinement with residuals in doubled precision squares the error of the dictionary, which is built afresh where
+    /// it exceeds [`DRIFT`]. `None` where the result does not agree with the data to rounding.
     pub(crate) fn sharp_point(&self) -> Option<Point> {
         let held = Numbers::doubled(self, &self.dictionary.value).corrected();
         let error = Numbers::new(self, &held, None, 1.0).error(self.size_of(&held));
@@ -71,9 +72,9 @@ impl PivotState {
         self.dictionary.value = self.values().corrected();
     }
 
-    /// Makes the column fetched last, on whose small rate in the `tied` rows a decision hangs, as true to the data as it
-    /// can be made: by refinement, or where the dictionary is too far off, its row as well, by building it afresh.
-    /// `false` (and nothing changed): the equations of the scheme are singular.
+    /// Makes the column fetched last, on whose small rate in the `tied` rows a decision depends, as true to the data as
+    /// it can be made: by refinement, or, where the dictionary is too far off for that, by building it afresh. `false`
+    /// (and nothing changed): the equations of the scheme are singular.
     pub(crate) fn refine_if_doubtful(&mut self, c: usize, tied: &[Candidate]) -> bool {
         let surest = tied.iter().map(|tied| self.relative_fall(c, tied)).fold(0.0, f64::max);
         let bearable = REFINED * surest;
@@ -112,7 +113,8 @@ impl PivotState {
         self.fresh
     }
 
-    /// After each batch of steps the values are compared with the data. `false`: they are wrong and the equations are singular.
+    /// After each batch of steps the values are compared with the data. `false`: they are wrong and the equations are
+    /// singular.
     pub(crate) fn check_drift(&mut self) -> bool {
         let batches = self.dictionary.batches();
         if std::mem::replace(&mut self.compared, batches) == batches {
@@ -126,7 +128,7 @@ impl PivotState {
 /// doubled precision.
 struct Numbers<'a, T: Real = f64> {
     stand: &'a PivotState,
-    /// Of the basic variables, row by row.
+    /// Numbers of the basic variables, row by row.
     held: &'a [f64],
     /// Column of the variable that grows; the others are zero.
     entering: Option<usize>,
