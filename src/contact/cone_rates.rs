@@ -1,5 +1,5 @@
-//! How an answer on Coulomb's cone changes with its load and its laws: the derivative of the equations that its pairs obey
-//! (method §7).
+//! How an answer on Coulomb's cone changes with its load and its laws: the derivative of the equations that its pairs
+//! obey (method §7).
 //!
 //! ```text
 //!   open    λ_n′ = 0;      closed   z_n′ = 0;      held   z_τ′ = 0
@@ -33,8 +33,8 @@ impl Standing {
     }
 }
 
-/// z′ over the joints where `rates` is the derivative of the problem, per unit of what it is taken by; `None` where the
-/// equations are singular.
+/// z′ over the joints where `rates` is the derivative of the problem, per unit of the parameter in question; `None`
+/// where the equations are singular.
 pub fn displacement_rates(
     problem: &ContactProblem,
     rates: &ContactProblem,

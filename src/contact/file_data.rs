@@ -1,4 +1,5 @@
-//! What a file gives of a contact system, kept beside what is condensed from it: answers are evaluated and checked from it.
+//! What a file gives of a contact system, kept beside what is condensed from it: answers are evaluated and checked from
+//! it.
 //!
 //! ```text
 //!   stiffness     λ = R (z − (g, 0)) + RF over all 2m joints; λ_τ = 0 along the tangents of frictionless pairs
@@ -47,7 +48,8 @@ pub struct FileLoad {
 pub struct FileForces {
     /// λ of the kept joints.
     pub joints: Vec<Sum>,
-    /// What the equations of the file leave over in the rows that were solved for: rounding, or the state is none.
+    /// Residuals of the file's equations in the rows that were solved for: rounding, or else the state does not obey
+    /// them.
     pub left: Vec<Sum>,
     /// z_τ of the frictionless pairs.
     pub slips: DVector<f64>,
@@ -76,8 +78,8 @@ impl FileData {
         Sum { value: self.row(row, x, start), magnitude: size + terms }
     }
 
-    /// z − (g, 0) − v − W λ in every kept row, each zero in a state that obeys the compliance; `moved` is z − (g, 0), known to
-    /// a few ε of `sizes`.
+    /// z − (g, 0) − v − W λ in every kept row, each zero in a state that obeys the compliance; `moved` is z − (g, 0),
+    /// known to a few ε of `sizes`.
     pub fn left_by(&self, forces: &[Sum], moved: &DVector<f64>, sizes: &DVector<f64>, load: &FileLoad) -> Vec<Sum> {
         let (mut all, mut all_sizes) = (DVector::zeros(self.matrix.nrows()), DVector::zeros(self.matrix.nrows()));
         for (force, &row) in forces.iter().zip(&self.kept) {
@@ -146,7 +148,7 @@ impl FileData {
             .collect();
         let slip = |&row: &usize| self.row(row, &all, load.vector[row]);
         FileForces {
-            // As well known as they are solved for: `left` tells whether that was well.
+            // Known as accurately as they were solved for, which `left` shows.
             joints: kept.iter().map(|&row| Sum::exactly(all[row])).collect(),
             left,
             slips: DVector::from_iterator(self.released.len(), self.released.iter().map(slip)),

@@ -1,19 +1,19 @@
 //! Contact problems in which joints repeat one another: some joints stand in *force form*.
 //!
-//! Where the joints of a structure depend on one another (two opposed pairs at one node, a T corner of a wall), or where
-//! a given compliance W is singular, no R says λ for every z: motions z are bound to one another, and forces are free up to
-//! self-stress. An independent set I keeps its displacement as the unknown, the others, D, take their force:
+//! Where the joints of a structure depend on one another (two opposed pairs at one node, a T corner of a wall), or
+//! where a given compliance W is singular, no R gives λ for every z: motions z are bound to one another, and forces are
+//! free up to self-stress. An independent set I keeps its displacement as the unknown, the others, D, take their force:
 //!
 //! ```text
 //!     [λ_I]   [R   −Aᵀ] [z_I − g_I]   [RF_I     ]          z_D = A z_I + h: what the joints have in common
 //!     [z_D] = [A    0 ] [λ_D      ] + [h_D + g_D]
 //! ```
-//! This mixed matrix and its constants stand in the place of R and RF in a [`ContactSystem`] that has a [`ForceForm`]. A
-//! singular compliance is the case with all joints in D and W in the place of the matrix. (It is a principal pivot
+//! This mixed matrix and its constants stand in place of R and RF in a [`ContactSystem`] that has a [`ForceForm`].
+//! A singular compliance is the case with all joints in D and W in place of the matrix. (It is a principal pivot
 //! transform of λ = R z + RF wherever R exists: Cottle, Pang, Stone, "The Linear Complementarity Problem", 2.3.)
 //!
-//! The couples of a pair in force form change sides. Normal: (z_n, x_n) instead of (x_n, z_n). Tangential: the unknowns are
-//! x⁺ and z⁻, and
+//! The couples of a pair in force form change sides. Normal: (z_n, x_n) instead of (x_n, z_n). Tangential: the unknowns
+//! are x⁺ and z⁻, and
 //!
 //! ```text
 //!     λ_τ = x⁺ − f x_n − c,     z⁺ = z_τ + z⁻ ≥ 0 ⟂ x⁺ ≥ 0,     x⁻ = 2 (f x_n + c) − x⁺ ≥ 0 ⟂ z⁻ ≥ 0
@@ -177,7 +177,8 @@ pub fn motion(system: &ContactSystem, contact: &ContactLcp, z: &[f64]) -> DVecto
     motion
 }
 
-/// λ and z of every joint as affine functions of the unknowns of the LCP, the constant in the last column; dimensionless.
+/// λ and z of every joint as affine functions of the unknowns of the LCP, the constant in the last column;
+/// dimensionless.
 struct Forms {
     force: DMatrix<f64>,
     displacement: DMatrix<f64>,
@@ -185,7 +186,7 @@ struct Forms {
 
 /// What the constants of the LCP are made of, dimensionless.
 struct Constants<'a> {
-    /// Of the joints: forces, displacements of those in force form.
+    /// Those of the joints: forces; displacements of those in force form.
     joints: &'a DVector<f64>,
     /// c or r_f of the pairs.
     fixed: &'a [f64],
@@ -368,7 +369,7 @@ pub fn contact_lcp(problem: &ContactProblem, covering: Covering) -> Result<Conta
     }
 }
 
-/// The same whatever the covering covers.
+/// The same, even where the covering does not cover q.
 pub fn written_lcp(problem: &ContactProblem, covering: Covering) -> ContactLcp {
     let system = &*problem.system;
     let rows = rows(system, Polygon::PLANE);
@@ -408,8 +409,8 @@ pub fn written_lcp(problem: &ContactProblem, covering: Covering) -> ContactLcp {
     }
 }
 
-/// Entry of the covering vector: as everywhere for forces and reserves; 1 for displacements; and for the second reserve of
-/// a couple in force form what both have together.
+/// Entry of the covering vector: as everywhere for forces and reserves; 1 for displacements; and for the second reserve
+/// of a couple in force form what both have together.
 fn cover(problem: &ContactProblem, row: RowId, swapped: bool, covering: Covering) -> f64 {
     let system = &*problem.system;
     if row.couple == RowKind::Normal || swapped {

@@ -8,7 +8,7 @@
 //! [x⁻ ]   [−RTn + f·Rnn  −RTT + f·RnT    RTT − f·RnT ] [z⁻ ]   [−RFτ + f·RFn + c   ]
 //! ```
 //!
-//! with RF − R·(g, 0) in the place of RF. Rows: x_n of all pairs that open, then x⁺ of all that have a tangential
+//! with RF − R·(g, 0) in place of RF. Rows: x_n of all pairs that open, then x⁺ of all that have a tangential
 //! joint, then their x⁻. A pair without a tangential joint has only x_n, a bilateral one only x^±.
 //! The sums are formed in the number type asked for: exact from the f64 data in rationals.
 

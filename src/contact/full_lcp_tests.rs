@@ -203,8 +203,8 @@ fn laws_mix() {
     assert!((lcp.matrix[5][4] - (r(4, 3) - 0.5 * r(2, 3))).abs() < 1e-15);
 }
 
-/// Validation 1 at its limit load: p = (F2 − n f F) / (n d_τ), with R as a factorization leaves it: noise where true
-/// zeros are, kernel made exact by projection.
+/// A bar on n supports, each pressed by F, just above its limit load n f F: p = (F2 − n f F) / (n d_τ), with R as a
+/// factorization leaves it: noise where true zeros are, kernel made exact by projection.
 #[test]
 fn p_at_the_limit_of_the_bar() {
     use rand::{Rng, SeedableRng};
@@ -351,14 +351,14 @@ fn f64_and_exact_engine_agree() {
     engines_agree(150, 6);
 }
 
-/// `cargo test --release --lib whole -- --ignored`
+/// `cargo test --release --lib full_lcp -- --ignored`
 #[test]
 #[ignore = "long"]
 fn f64_and_exact_engine_agree_on_many() {
     engines_agree(2000, 12);
 }
 
-/// `cargo test --release --lib whole -- --ignored --nocapture`
+/// `cargo test --release --lib full_lcp -- --ignored --nocapture`
 #[test]
 #[ignore = "a measurement"]
 fn exact_engine_with_sixty_pairs() {

@@ -264,7 +264,7 @@ fn from_compliance(
     matrix: DMatrix<f64>,
 ) -> Result<(ContactSystem, Vec<String>), GivenError> {
     null_space("compliance", &matrix)?;
-    // Joints that carry no force are left out of W as they are: their motion follows.
+    // Joints that carry no force are simply left out of W: their motion follows.
     let rows = Rows::of(given);
     let own = Rows::block(&matrix, &rows.kept, &rows.kept);
     let factor = PivotedCholesky::new(&own);
@@ -296,8 +296,8 @@ fn from_compliance(
     Ok((system, Vec::new()))
 }
 
-/// The system of a singular W: all joints in force form, but the normals of bound pairs, which are exchanged for their
-/// displacements one by one.
+/// The system of a singular W: all joints in force form except the normals of bound pairs, which are exchanged for
+/// their displacements one by one.
 fn singular_compliance(
     given: &GivenContactSystem,
     matrix: DMatrix<f64>,
@@ -339,7 +339,7 @@ fn singular_compliance(
     })
 }
 
-/// η = H y + h with some vectors h.
+/// η = H y + h, with one vector h for each load case.
 struct Mixed {
     matrix: DMatrix<f64>,
     loads: Vec<DVector<f64>>,
@@ -396,8 +396,8 @@ fn nearly_singular(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64]) 
     )
 }
 
-/// `1 z_n of c1, -0.5 z_t of c2`, in space z_t1 and z_t2: the entries of a vector over all joints, largest 1; what is small after scaling to
-/// unit diagonal is left out.
+/// `1 z_n of c1, -0.5 z_t of c2`, in space z_t1 and z_t2: the entries of a vector over all joints, largest 1; what is
+/// small after scaling to unit diagonal is left out.
 fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64]) -> String {
     let (m, tangents) = (given.pairs.len(), given.tangents);
     let joint = |i: usize| match i.checked_sub(m) {
@@ -424,9 +424,9 @@ fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64]) 
     }
 }
 
-/// R with the motions exactly in its kernel: (I − Q Qᵀ) S (I − Q Qᵀ) scaled back, where S is R scaled to unit diagonal (by
-/// powers of two) and Q spans the scaled motions. Without the scaling the rounding of the stiffest joint would cover the
-/// softest ones.
+/// R with the motions exactly in its kernel: (I − Q Qᵀ) S (I − Q Qᵀ) scaled back, where S is R scaled to unit diagonal
+/// (by powers of two) and Q spans the scaled motions. Without the scaling the rounding of the stiffest joint would
+/// swamp the softest ones.
 fn without_kernel(stiffness: &DMatrix<f64>, motions: &[DVector<f64>]) -> DMatrix<f64> {
     let n = stiffness.nrows();
     let scale = super::pivoted::scales(stiffness);
@@ -438,7 +438,7 @@ fn without_kernel(stiffness: &DMatrix<f64>, motions: &[DVector<f64>]) -> DMatrix
     }
     let left = &scaled - &q * (q.transpose() * &scaled);
     let both = &left - (&left * &q) * q.transpose();
-    // A joint of which nothing is left but rounding moves for nothing: noise against which no zero can be told.
+    // A joint of which only rounding is left moves at no cost; no zero could be told from noise of its size.
     let is_free = |i: usize| both[(i, i)] <= NOISE;
     DMatrix::from_fn(n, n, |i, j| {
         let entry = 0.5 * (both[(i, j)] + both[(j, i)]) * scale[i] * scale[j];

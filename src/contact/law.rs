@@ -4,8 +4,8 @@
 //!   normal joint       unilateral: x_n ≥ 0 ⟂ z_n ≥ 0, which starts at the gap g;   bilateral: z_n = 0
 //!   tangential joint   free: x_τ = 0;   bounded: |x_τ| ≤ f x_n + c
 //! ```
-//! Which word a file has for this is known to the decoder and to the report of the law; a known friction bound r_f is
-//! f = 0 and c = r_f. The directions of friction are those of [`super::polygon`]: a pair in the plane has two.
+//! Only the decoder and the report of the law know the word that a file has for this; a known friction bound r_f is f =
+//! 0 and c = r_f. The directions of friction are those of [`super::polygon`]: a pair in the plane has two.
 
 use crate::model::pair::{Law, LawKind};
 use crate::model::parameter::Number;
@@ -88,7 +88,7 @@ impl PairLaw {
         self.normal == NormalJoint::Bilateral
     }
 
-    /// g, a length, < 0 of an interference; 0 where the pair never opens.
+    /// g, a length, < 0 for an interference; 0 where the pair never opens.
     pub fn gap(&self) -> f64 {
         match self.normal {
             NormalJoint::Unilateral { gap } => gap,
@@ -113,7 +113,7 @@ impl PairLaw {
         }
     }
 
-    /// The part of the friction bound that does not hang on x_n: c ≥ 0, a force.
+    /// The part of the friction bound that does not depend on x_n: c ≥ 0, a force.
     pub fn fixed_bound(&self) -> f64 {
         match self.tangential {
             TangentialJoint::Bounded { fixed, .. } => fixed,
@@ -121,7 +121,7 @@ impl PairLaw {
         }
     }
 
-    /// The law with another f, where its bound hangs on x_n.
+    /// The law with another f, where its bound depends on x_n.
     #[must_use]
     pub fn with_friction(mut self, friction: f64) -> PairLaw {
         if let (NormalJoint::Unilateral { .. }, TangentialJoint::Bounded { friction: own, .. }) =
@@ -151,7 +151,8 @@ impl PairLaw {
         }
     }
 
-    /// 2 (d_τ − f d_n), without a unit: what both reserves together are covered by, without the rounding of the difference.
+    /// 2 (d_τ − f d_n), without a unit: what both reserves together are covered by, without the rounding of the
+    /// difference.
     pub fn covering_of_both(&self, covering: Covering) -> f64 {
         match covering {
             _ if self.is_bilateral() => 2.0,

@@ -1,8 +1,8 @@
 //! Contact problem → LCP, eqs. (1), (2), (8) of method §3, laws mixed, dimensionless inside.
 //!
-//! Rows of the full LCP: all x_n, then all x⁺, then all x⁻, each in the order of the pairs; in space facet by facet of the
-//! polygon. Only x_n and the first half of the facets are stored, in the plane x⁺; the others are their mirrors (see
-//! `lcp::mirrored`), so the 3m rows of M, in space (1 + K) m, are never formed.
+//! Rows of the full LCP: all x_n, then all x⁺, then all x⁻, each in the order of the pairs; in space facet by facet of
+//! the polygon. Only x_n and the first half of the facets are stored, in the plane x⁺; the others are their mirrors
+//! (see `lcp::mirrored`), so the 3m rows of M, in space (1 + K) m, are never formed.
 //!
 //! Forces are divided by `force_unit`, displacements by `length_unit`, both exact powers of two (up to the ratio
 //! given by R), so that results scale back without rounding.
@@ -23,8 +23,8 @@ use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::problem::{NOISE, Scale};
 use crate::model::rules::Covering;
 
-/// √R_ii of every joint, R in the given unit. A joint without stiffness responds to nothing: any size will do for it,
-/// but not zero.
+/// √R_ii of every joint, R in the given unit. A joint without stiffness responds to nothing: any size but zero will do
+/// for it.
 fn joint_scales(system: &ContactSystem, stiffness_unit: f64) -> Vec<f64> {
     let diagonal = system.stiffness.diagonal();
     let scales = diagonal.map(|entry| (entry / stiffness_unit).max(0.0).sqrt());
@@ -94,7 +94,7 @@ pub fn contact_lcp_like(
         if lcp.covering[row] == 0.0 && written.least_reserve(law, i, &along) < 0.0 {
             return Err(CoveringError::WeightWithoutFriction { pair: system.pairs[i].id.clone() });
         }
-        // A pair without a normal row holds both ways: its bound does not hang on x_n.
+        // A pair without a normal row holds both ways: its bound does not depend on x_n.
         lcp.scale.row[row] += law.friction() * normal_row[i].map_or(0.0, |normal| scales[normal]);
         lcp.mirrors[row] = facet_rows[facet + polygon.half()][i].map(|minus| Mirror {
             whole: minus,
@@ -217,8 +217,8 @@ impl LoadAndUnits {
 }
 
 impl ContactLcp {
-    /// z over the joints (z_n, z_τ = Σ ζ_k d_k, in the plane z⁺ − z⁻) of a point or direction, dimensionless. With joints in force form: of a
-    /// direction.
+    /// z over the joints (z_n, z_τ = Σ ζ_k d_k, in the plane z⁺ − z⁻) of a point or direction, dimensionless. With
+    /// joints in force form only of a direction.
     pub fn joint_displacements(&self, system: &ContactSystem, z: &[f64]) -> DVector<f64> {
         if system.force_form.is_some() {
             return force_form::motion(system, self, z) / self.length_unit;

@@ -1,4 +1,4 @@
-//! The LCP of a contact problem whose load grows: load + t · increment in the place of the covering.
+//! The LCP of a contact problem whose load grows: load + t · increment in place of the covering.
 
 use std::sync::Arc;
 

@@ -8,8 +8,8 @@ use super::sum::Sum;
 use super::sums::joint_forces;
 use crate::watch::Watch;
 
-/// Answers at most until the multipliers of joints that repeat one another must have settled: each gains some five digits,
-/// and only parts that do not fit press on for ever.
+/// Largest number of answers in which the multipliers of joints that repeat one another must settle: each gains some
+/// five digits, and only parts that do not fit press on for ever.
 const MULTIPLIERS: usize = 12;
 
 /// The parts of a [`ConeProblem`] that are made for it.
@@ -23,7 +23,7 @@ pub struct OnCone<'a> {
 }
 
 impl<'a> OnCone<'a> {
-    /// Of a problem without joints in force form.
+    /// From a problem without joints in force form.
     pub fn new(problem: &'a ContactProblem) -> OnCone<'a> {
         let constants = joint_forces(problem, &DVector::zeros(problem.system.joint_count()));
         let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(constants.len(), constants.iter().map(pick));
@@ -83,8 +83,8 @@ pub fn cone_pairs(problem: &ContactProblem) -> Vec<ConePair> {
     pairs.map(|(pair, law)| ConePair { law: *law, tangents: pair.tangential.clone() }).collect()
 }
 
-/// The pairs on a cone that holds all that the friction of the problem admits: Coulomb's cone itself, or the one around a
-/// polygon that is solved for its own sake, whose corners lie 1/cos(π/K) farther out.
+/// The pairs on a cone that holds all that the friction of the problem admits: Coulomb's cone itself, or the one around
+/// a polygon that is solved for its own sake, whose corners lie 1/cos(π/K) farther out.
 pub fn widest_cone_pairs(problem: &ContactProblem) -> Vec<ConePair> {
     let mut pairs = cone_pairs(problem);
     if problem.system.is_in_space() && !problem.cone {

@@ -1,5 +1,5 @@
-//! A symmetric positive semidefinite matrix factored with pivoting after scaling to unit diagonal, and its null space by
-//! the matrix's own digits.
+//! A symmetric positive semidefinite matrix factored with pivoting after scaling to unit diagonal, and its null space
+//! by the matrix's own digits.
 //!
 //! ```text
 //!   S = D⁻¹ A D⁻¹ (D powers of two near √A_ii, so that S has the digits of A),   P S Pᵀ = L Lᵀ + [0 0; 0 Σ]
@@ -14,9 +14,9 @@ use crate::lcp::subtract_square;
 
 /// A row of A z below this share of its terms is zero by the digits of A.
 const DIGITS: f64 = 64.0 * f64::EPSILON;
-/// A remaining pivot (of 1) up to this is looked at.
+/// A remaining pivot (of a diagonal of 1) up to this is examined: it may be zero.
 const NEARLY: f64 = 1e-10;
-/// Columns that are taken off the rest at once.
+/// Columns that are subtracted from the rest at once.
 const PANEL: usize = 64;
 
 /// See the module.
@@ -51,7 +51,7 @@ impl PivotedCholesky {
         let mut l = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / scale[i] / scale[j]);
         let mut order: Vec<usize> = (0..n).collect();
         let mut rank = 0;
-        // What the columns of the panel at hand take off each diagonal entry.
+        // What the columns of the panel at hand subtract from each diagonal entry.
         let mut taken = vec![0.0; n];
         while rank < n {
             let panel = rank;
@@ -96,7 +96,7 @@ impl PivotedCholesky {
         x
     }
 
-    /// The null space of A, which this is the factor of.
+    /// The null space of A, the matrix that was factored.
     pub fn null_space(&self, matrix: &DMatrix<f64>) -> NullSpace {
         let (n, rank) = (self.order.len(), self.rank);
         let rest = &self.order[rank..];
@@ -137,7 +137,7 @@ impl PivotedCholesky {
             }
             z -= self.solve(&residual);
         }
-        // An entry that is 0 in truth is rounding, and the only term of some row.
+        // An entry that should be 0 holds rounding, and may be the only term of some row.
         let size = |z: &DVector<f64>, i: usize| z[i].abs() * self.scale[i];
         let largest = (0..z.len()).map(|i| size(&z, i)).fold(0.0, f64::max);
         let simple = DVector::from_fn(z.len(), |i, _| if size(&z, i) <= f64::EPSILON * largest { 0.0 } else { z[i] });
@@ -168,7 +168,7 @@ fn swap(a: &mut DMatrix<f64>, k: usize, p: usize) {
     }
 }
 
-/// Column k of L below its diagonal: the columns of the panel from `from` on taken off it, over the root of the pivot.
+/// Column k of L below its diagonal: less the columns of the panel from `from` on, divided by the root of the pivot.
 fn finish_column(l: &mut DMatrix<f64>, from: usize, k: usize, root: f64) {
     let n = l.nrows();
     let (done, rest) = l.as_mut_slice().split_at_mut(k * n);
@@ -181,7 +181,7 @@ fn finish_column(l: &mut DMatrix<f64>, from: usize, k: usize, root: f64) {
     rest[k] = root;
 }
 
-/// Takes the columns `from` … `to` off all that is to their right.
+/// Subtracts the columns `from` … `to` from all that is to their right.
 fn finish_panel(l: &mut DMatrix<f64>, from: usize, to: usize) {
     let n = l.nrows();
     let (done, rest) = l.as_mut_slice().split_at_mut(to * n);

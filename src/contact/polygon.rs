@@ -1,10 +1,12 @@
-//! The friction polygon: the directions in which a pair can slip, and between which friction is interpolated (method §7).
+//! The friction polygon: the directions in which a pair can slip, and between which friction is interpolated (method
+//! §7).
 //!
 //! ```text
 //!   x^k = f x_n + c + d_k·x_τ ≥ 0  ⟂  ζ_k ≥ 0,      z_τ = Σ ζ_k d_k,      k = 0 … K − 1
 //! ```
-//! K is even and facet k + K/2 is the mirror of facet k, d_(k+K/2) = −d_k. A pair in the plane has K = 2 facets, ±t: x^0 is
-//! x⁺, x^1 is x⁻. In space d_0 lies along t1, turned by an angle where the polygon is, and the others follow towards t2.
+//! K is even and facet k + K/2 is the mirror of facet k, d_(k+K/2) = −d_k. A pair in the plane has K = 2 facets, ±t:
+//! x^0 is x⁺, x^1 is x⁻. In space d_0 lies along t1, turned by an angle where the polygon is, and the others follow
+//! towards t2.
 
 use std::f64::consts::TAU;
 
@@ -21,7 +23,8 @@ impl Polygon {
     /// ±t.
     pub const PLANE: Polygon = Polygon { facets: 2, turn: 0.0 };
 
-    /// A regular polygon in space, `facets` even and at least 4; `turn` is the angle of d_0 from t1 towards t2, in radians.
+    /// A regular polygon in space, `facets` even and at least 4; `turn` is the angle of d_0 from t1 towards t2, in
+    /// radians.
     pub fn regular(facets: u16, turn: f64) -> Polygon {
         debug_assert!(facets >= 4 && facets.is_multiple_of(2), "a polygon of {facets} facets");
         Polygon { facets, turn }
@@ -56,7 +59,7 @@ impl Polygon {
         [angle.cos(), angle.sin()]
     }
 
-    /// ζ ≥ 0 of every facet whose sum is the slip: of the two facets next to it.
+    /// ζ_k ≥ 0 of every facet, with Σ ζ_k d_k the slip: > 0 only for the facets next to it.
     pub fn slips(self, slip: [f64; 2]) -> Vec<f64> {
         let mut slips = vec![0.0; self.facets()];
         if self.facets == 2 {

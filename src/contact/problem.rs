@@ -12,8 +12,8 @@ use crate::lcp::exact::scalar::Scalar;
 use crate::lcp::problem::NOISE;
 use crate::model::rules::{FACETS, Rules};
 
-/// λ = R (z − (g, 0)) + load over the joints, and what the laws demand of λ and z. The system is shared: what changes when
-/// a parameter moves is the rest.
+/// λ = R (z − (g, 0)) + load over the joints, and what the laws demand of λ and z. The system is shared: what changes
+/// when a parameter moves is the rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactProblem {
     /// R, RF per load case and the pairs.
@@ -22,15 +22,17 @@ pub struct ContactProblem {
     pub laws: Vec<PairLaw>,
     /// The directions in which pairs slip.
     pub polygon: Polygon,
-    /// Whether friction in space is Coulomb's cone, which the polygon stands in for until the end; otherwise it is the polygon.
+    /// Whether friction in space is Coulomb's cone, which the polygon stands in for until the end; otherwise it is the
+    /// polygon.
     pub cone: bool,
-    /// Factor of every load case; with none the load is not made of them.
+    /// Factor of every load case; empty where the load is not made of the cases.
     pub factors: Vec<f64>,
     /// Σ factor·RF over the joints, forces; a history adds what its committed slips do, R z.
     pub load: DVector<f64>,
     /// Σ |factor|·magnitude of RF: what `load` was summed from, the measure of its rounding.
     pub load_terms: DVector<f64>,
-    /// The same load as the file has it, where the system keeps its file; `None` after another load was put in its place.
+    /// The same load as the file has it, where the system keeps its file; `None` after another load was put in its
+    /// place.
     pub file_load: Option<FileLoad>,
 }
 
@@ -98,7 +100,7 @@ impl ContactProblem {
         self.load_terms += factor.abs() * terms;
     }
 
-    /// Puts a load in the place of the present one; its entries count as exact.
+    /// Puts a load in place of the present one; its entries count as exact.
     pub fn set_load(&mut self, load: DVector<f64>) {
         self.file_load = None;
         self.load_terms = load.abs();
@@ -118,7 +120,7 @@ impl ContactProblem {
         self
     }
 
-    /// g of every pair, that is of the joints from the first on: lengths, < 0 of an interference.
+    /// g of every pair, that is of the joints from the first on: lengths, < 0 for an interference.
     pub fn gaps(&self) -> impl Iterator<Item = f64> {
         self.laws.iter().map(PairLaw::gap)
     }
@@ -140,7 +142,7 @@ impl ContactProblem {
         moved
     }
 
-    /// The magnitudes of its terms: those of z and of the gaps.
+    /// The magnitudes of the terms of [`Self::dislocation`]: those of z and of the gaps.
     pub fn dislocation_sizes(&self, mut sizes: DVector<f64>) -> DVector<f64> {
         sizes.iter_mut().zip(self.gaps()).for_each(|(size, gap)| *size += gap.abs());
         sizes

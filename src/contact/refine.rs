@@ -24,7 +24,8 @@ const ROUNDS: usize = 4;
 /// Residuals up to this share of their terms are as good as z in f64 can make them.
 const GOOD: f64 = NOISE / 8.0;
 
-/// The point with the rows of its released joints put right; as it is where they are, or where no step helps.
+/// The point with the rows of its released joints put right; unchanged where they are right already, or where no step
+/// helps.
 pub fn refined(problem: &ContactProblem, contact: &ContactLcp, point: Point) -> Point {
     let system = &*problem.system;
     if system.force_form.is_some() {
@@ -57,7 +58,8 @@ fn released(point: &Point) -> Basis {
     Basis { active: rows.clone(), z: rows, p: false }
 }
 
-/// An open pair that nothing holds slides either way: z⁺ < 0 is z⁻, and ζ < 0 of any facet that of its mirror. Elsewhere what is below zero is rounding.
+/// An open pair that nothing holds slides either way: z⁺ < 0 is z⁻, and ζ < 0 of any facet is that of its mirror.
+/// Elsewhere what is below zero is rounding.
 fn settle_signs(problem: &ContactProblem, contact: &ContactLcp, point: &mut Point) {
     for (row, meaning) in contact.rows.iter().enumerate() {
         if point.z[row] >= 0.0 {
@@ -115,7 +117,7 @@ fn rows(problem: &ContactProblem, contact: &ContactLcp, point: &Point, doubled: 
         .collect()
 }
 
-/// Puts the values of R z + RF, summed in twice the precision, in the place of the plain ones.
+/// Puts the values of R z + RF, summed in twice the precision, in place of the plain ones.
 fn add_doubled(system: &ContactSystem, load: &DVector<f64>, moved: &DVector<f64>, forces: &mut [Sum]) {
     for (i, force) in forces.iter_mut().enumerate() {
         // R is symmetric to the last digit: a column is a row.

@@ -58,8 +58,9 @@ impl RowId {
         format!("{letter}{index}[{}]", pair.id)
     }
 
-    /// The joints whose displacements this row's goes into, with its components along them: the normal joint, or those of
-    /// d_k along the tangential ones. The force of the row feels the same joints by the same factors.
+    /// The joints to whose displacements that of this row contributes, with its components along them: the normal
+    /// joint, or those of d_k along the tangential ones. The force of the row feels the same joints by the same
+    /// factors.
     pub fn joints(self, system: &ContactSystem, polygon: Polygon) -> impl Iterator<Item = (usize, f64)> + use<> {
         let (joints, components) = match self.couple.facet() {
             None => (self.pair..self.pair + 1, [1.0, 0.0]),
@@ -69,8 +70,8 @@ impl RowId {
     }
 }
 
-/// The rows of the full LCP: x_n of all pairs that open, then facet by facet the reserves of all that have tangential joints.
-/// Those of the second half of the facets are mirrors of the first half.
+/// The rows of the full LCP: x_n of all pairs that open, then facet by facet the reserves of all that have tangential
+/// joints. Those of the second half of the facets are mirrors of the first half.
 pub fn rows(system: &ContactSystem, polygon: Polygon) -> Vec<RowId> {
     let of = |couple: RowKind, has: fn(&ContactPair) -> bool| {
         let pairs = system.pairs.iter().enumerate().filter(move |(_, pair)| has(pair));

@@ -1,16 +1,16 @@
 //! The forces of joints that repeat one another: of all that the laws admit under a given motion, those of least norm.
 //!
-//! Self-stress S μ moves nothing, so a state knows its forces up to that. What an answer shows is, cluster by cluster of
-//! pairs that self-stress connects,
+//! Self-stress S μ moves nothing, so a state determines its forces only up to that. What an answer shows is, cluster by
+//! cluster of pairs that self-stress connects,
 //!
 //! ```text
 //!     min ½ |λ|²,   λ = λ₀ + S μ
 //!     open:   λ_n = 0                              slipping ±:  λ_τ = ∓ (f λ_n + c)
 //!     closed: λ_n ≥ 0                              sticking:    |λ_τ| ≤ f λ_n + c
 //! ```
-//! a convex quadratic program of a few unknowns. What must hold as equations is taken out by a basis of the rest, and the
-//! conditions of Karush, Kuhn and Tucker of what is left are an LCP with a positive semidefinite matrix, which Lemke's
-//! algorithm solves.
+//! a convex quadratic program of a few unknowns. What must hold as equations is taken out by a basis of the rest, and
+//! the conditions of Karush, Kuhn and Tucker of what is left are an LCP with a positive semidefinite matrix, which
+//! Lemke's algorithm solves.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ use crate::lcp::ratio_test::TieRule;
 /// Pivots after which the forces are left as they were found.
 const PIVOTS: usize = 10_000;
 
-/// Puts the forces of least norm in the place of `forces`, with the magnitudes of their terms; z as in the state, exact
+/// Puts the forces of least norm in place of `forces`, with the magnitudes of their terms; z as in the state, exact
 /// zeros where nothing moves. Returns the pairs whose forces are not determined by the motion.
 pub fn least_norm(problem: &ContactProblem, z: &DVector<f64>, forces: &mut [Sum]) -> Vec<usize> {
     let system = &*problem.system;
@@ -47,8 +47,9 @@ pub fn least_norm(problem: &ContactProblem, z: &DVector<f64>, forces: &mut [Sum]
     free
 }
 
-/// Pairs with closed self-stress in a cluster with friction: their bounds change with the normal forces, so that another
-/// self-stress than the one found may hold another motion. Without friction the motion does not depend on the self-stress.
+/// Pairs with closed self-stress in a cluster with friction: their bounds change with the normal forces, so that
+/// another self-stress than the one found may hold another motion. Without friction the motion does not depend on the
+/// self-stress.
 pub fn may_hold_otherwise(problem: &ContactProblem, z: &DVector<f64>) -> Vec<usize> {
     let system = &*problem.system;
     if let Some(yielding) = &system.yielding {
@@ -154,7 +155,7 @@ impl Cluster<'_> {
         (zero, positive)
     }
 
-    /// The self-stress that what must be zero leaves.
+    /// The self-stress that the combinations which must be zero leave.
     fn freedom(&self, self_stress: &DMatrix<f64>, zero: &[Combination]) -> Option<Freedom> {
         let joints: Vec<usize> = self.pairs.iter().flat_map(|&pair| joints_of(&self.problem.system, pair)).collect();
         let columns: Vec<usize> = (0..self_stress.ncols())
@@ -215,7 +216,7 @@ fn null_basis(rows: &DMatrix<f64>, columns: usize) -> Option<DMatrix<f64>> {
     if rows.nrows() == 0 {
         return (columns > 0).then(|| DMatrix::identity(columns, columns));
     }
-    // Square it up: the decomposition gives as many right vectors as there are rows otherwise.
+    // Padded to a square: otherwise the decomposition gives only as many right vectors as there are rows.
     let padded = rows.clone().resize_vertically(rows.nrows().max(columns), 0.0);
     let svd = padded.svd(false, true);
     let v_t = svd.v_t?;
@@ -234,8 +235,8 @@ struct Change {
     at_limit: Vec<usize>,
 }
 
-/// The ν that makes λ₀ + Q ν shortest under g·λ + constant ≥ 0: with ν = P⁻¹ (Qᵀ Gᵀ y − Qᵀ λ₀), P = Qᵀ Q, the slacks and
-/// the multipliers y are w and z of an LCP.
+/// The ν that makes λ₀ + Q ν shortest under g·λ + constant ≥ 0: with ν = P⁻¹ (Qᵀ Gᵀ y − Qᵀ λ₀), P = Qᵀ Q, the slacks
+/// and the multipliers y are w and z of an LCP.
 fn shortest(
     free: &DMatrix<f64>,
     force: &dyn Fn(usize) -> f64,
@@ -328,7 +329,8 @@ mod tests {
 
     #[test]
     fn what_slips_stays_at_its_bound() {
-        // x_τ1 = −x_1/2, x_τ2 = x_2/2 (they slip against each other's sense): x_τ1 − x_τ2 = −(x_1 + x_2)/2 fixes the sum.
+        // x_τ1 = −x_1/2, x_τ2 = x_2/2 (they slip against each other's sense): x_τ1 − x_τ2 = −(x_1 + x_2)/2 fixes the
+        // sum.
         let forces = [5.0, 2.0, -2.5, 1.0];
         assert_eq!(settled(0.5, [0.0, 0.0, 1.0, -1.0], forces), (forces, vec![]));
     }

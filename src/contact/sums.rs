@@ -17,8 +17,8 @@ fn root(system: &ContactSystem, joint: usize) -> f64 {
     system.stiffness[(joint, joint)].max(0.0).sqrt()
 }
 
-/// λ = R (z − (g, 0)) + RF over the joints; of joints in force form z is λ and λ is z. Where R is [`rounded`](ContactSystem::rounded), √(R_ii R_kk) stands for |R_ik|
-/// in the magnitudes.
+/// λ = R (z − (g, 0)) + RF over the joints; of joints in force form z is λ and λ is z. Where R is
+/// [`rounded`](ContactSystem::rounded), √(R_ii R_kk) stands for |R_ik| in the magnitudes.
 pub fn joint_forces(problem: &ContactProblem, z: &DVector<f64>) -> Vec<Sum> {
     state_forces(problem, z).joints
 }
@@ -102,8 +102,8 @@ pub struct PairSums {
     pub reserves: Vec<Sum>,
 }
 
-/// x_n and the reserves of a pair under joint forces. An open pair has x_n = 0, not the rounding of a stiff joint's λ, in
-/// its bound.
+/// x_n and the reserves of a pair under joint forces. An open pair has x_n = 0, not the rounding of a stiff joint's λ,
+/// in its bound.
 pub fn pair_sums(problem: &ContactProblem, forces: &[Sum], (pair, is_open): (usize, bool)) -> PairSums {
     let of = &problem.system.pairs[pair];
     let normal = (!of.law.is_bilateral()).then(|| forces[pair]);
@@ -124,8 +124,9 @@ pub fn friction_bound(problem: &ContactProblem, forces: &[Sum], (pair, is_open):
     if is_open { fixed } else { fixed.plus(problem.laws[pair].friction(), forces[pair]) }
 }
 
-/// What share of the forces hangs on the displacement of a joint: max over the rows of |R_ik z_k| / Σ |terms|, 0 … 1. A z
-/// whose share is a few ε cannot be told from 0 by any force. A joint that no force feels is measured by the largest z.
+/// What share of the forces depends on the displacement of a joint: max over the rows of |R_ik z_k| / Σ |terms|, 0 … 1.
+/// A z whose share is a few ε cannot be told from 0 by any force. A joint that no force feels is measured by the
+/// largest z.
 pub fn displacement_share(system: &ContactSystem, z: &DVector<f64>, forces: &[Sum], joint: usize) -> f64 {
     share_of(system, z, forces, (joint, z[joint].abs()))
 }

@@ -26,8 +26,8 @@ pub struct ContactPair {
     pub frame: Option<[[f64; 3]; 2]>,
     /// Number of the joint it belongs to: a line along which its pairs follow one another.
     pub joint: usize,
-    /// Rows of its tangential joints in R: one along t in the plane, t1 and t2 in space, none of a frictionless pair. The
-    /// normal joint of pair i is row i.
+    /// Rows of its tangential joints in R: one along t in the plane, t1 and t2 in space, none of a frictionless pair.
+    /// The normal joint of pair i is row i.
     pub tangential: Range<usize>,
 }
 
@@ -42,7 +42,8 @@ impl ContactPair {
         self.tangential.len() == 2
     }
 
-    /// z_τ (> 0 along +t) where z is this over the joints, along t or along t1 and t2; 0 where it has no tangential joint.
+    /// z_τ (> 0 along +t) of the pair, from z over the joints, along t or along t1 and t2; 0 where it has no tangential
+    /// joint.
     pub fn slip(&self, z: &DVector<f64>) -> [f64; 2] {
         let mut slip = [0.0; 2];
         slip.iter_mut().zip(self.tangential.clone()).for_each(|(slip, joint)| *slip = z[joint]);
@@ -77,7 +78,7 @@ impl JointLoad {
 /// The joints whose force is the unknown (see [`super::force_form`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForceForm {
-    /// Whether a joint is, per joint.
+    /// Per joint, whether its force is the unknown.
     pub joints: Vec<bool>,
     /// Basis of the self-stress: joint forces that nothing feels, k × s.
     pub self_stress: DMatrix<f64>,
@@ -102,7 +103,7 @@ pub struct ContactSystem {
     /// Tangential joints of each pair that rubs: 1 in the plane, 2 in space.
     pub tangents: usize,
     /// R, k × k, symmetric, positive semidefinite: what answers are checked against. Of a structure its kernel is exact
-    /// (method §4, "Zero"); of a file it stands as given. With a [`ForceForm`] the mixed matrix of both forms.
+    /// (method §2); of a file it stands as given. With a [`ForceForm`] the mixed matrix of both forms.
     pub stiffness: DMatrix<f64>,
     /// RF per load case.
     pub loads: Vec<JointLoad>,
@@ -115,7 +116,8 @@ pub struct ContactSystem {
     pub corrected: Option<DMatrix<f64>>,
     /// The joints whose force is the unknown, where joints repeat one another; `None` where all are independent.
     pub force_form: Option<ForceForm>,
-    /// What joints that repeat one another in space were made to yield of, so that R holds for all of them.
+    /// What the system was made from where joints that repeat one another in space were made to yield, so that R holds
+    /// for all of them.
     pub yielding: Option<Box<Yielding>>,
     /// The data of a file that R and RF were made from; `None` where they are the data, and for a structure.
     pub file: Option<Arc<FileData>>,
@@ -132,7 +134,7 @@ impl ContactSystem {
         self.stiffness.nrows()
     }
 
-    /// Whether pairs slip in a plane of directions: what their friction polygon has more than two facets for.
+    /// Whether pairs slip in a plane of directions: then their friction polygon has more than two facets.
     pub fn is_in_space(&self) -> bool {
         self.tangents == 2
     }
@@ -142,7 +144,7 @@ impl ContactSystem {
         self.is_in_space().then(|| format!("`{command}` works in the plane only so far; this problem is in space"))
     }
 
-    /// Up to where an entry of R is the rounding of a zero, in its unit; 0 where the entries are data.
+    /// Magnitude up to which an entry of R is the rounding of a zero, in its unit; 0 where the entries are data.
     pub fn entry_noise(&self, i: usize, j: usize) -> f64 {
         if !self.rounded {
             return 0.0;
@@ -155,7 +157,8 @@ impl ContactSystem {
         self.force_form.is_some() || self.yielding.is_some()
     }
 
-    /// R with zeros in place of what the condensation leaves of them: it says nothing and would make all fractions long.
+    /// R with zeros in place of what the condensation leaves of them: it says nothing and would make all fractions
+    /// long.
     pub fn stiffness_without_noise(&self) -> DMatrix<f64> {
         self.stiffness.map_with_location(|i, j, entry| if entry.abs() > self.entry_noise(i, j) { entry } else { 0.0 })
     }

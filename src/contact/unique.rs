@@ -8,11 +8,11 @@
 //! ```text
 //!   vᵀ P R v  ≤  Σ f_i |(R v)_n,i| |v_τ,i|  ≤  ½ Σ f_i (α (R v)_n,i² + v_τ,i² / α)
 //! ```
-//! Where the matrix A = ½ (P R + R P) − ½ R_n F R_nᵀ α − ½ F / α of the difference of both sides is positive definite, but for
-//! the kernel of R, there is no such v outside the kernel: the forces are the only ones, and so is the motion wherever joints
-//! that are held let no motion of the kernel through ([`is_determined`]). Everything is scaled to a unit diagonal of R before;
-//! s and α are chosen so that the bound is large. A larger weight on the normals helps the more, the less tangential and
-//! normal joints feel one another (R_nτ).
+//! Where the matrix A = ½ (P R + R P) − ½ R_n F R_nᵀ α − ½ F / α of the difference of both sides is positive definite,
+//! but for the kernel of R, there is no such v outside the kernel: the forces are the only ones, and so is the motion
+//! wherever joints that are held let no motion of the kernel through ([`is_determined`]). Everything is scaled to a
+//! unit diagonal of R before; s and α are chosen so that the bound is large. A larger weight on the normals helps the
+//! more, the less tangential and normal joints feel one another (R_nτ).
 
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ use crate::lcp::dense::Cholesky;
 
 /// Weights of the normal joints that are tried.
 const WEIGHTS: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0];
-/// Steps by which the largest eigenvalues are found that tell which weight to take; nothing is proved by them.
+/// Steps of the power iteration for the eigenvalues from which the weight is chosen; nothing is proved by them.
 const STEPS: usize = 12;
 /// Halvings between a multiple of the friction that is proved and one that is not.
 const HALVINGS: usize = 4;
@@ -49,7 +49,7 @@ pub struct Uniqueness {
 #[derive(Clone, Debug)]
 struct Form {
     stiffness: DMatrix<f64>,
-    /// √(R_nn / R_ττ) of every pair: by this friction grows.
+    /// √(R_nn / R_ττ) of every pair: what its friction is multiplied by.
     stretch: Vec<f64>,
     /// ½ (P R + R P).
     weighted: DMatrix<f64>,
@@ -85,7 +85,8 @@ impl Uniqueness {
             self.open.push(frictions);
             return false;
         };
-        // A sweep asks for more and more friction: the bound in this direction, so that most questions are answered by it.
+        // A sweep asks for more and more friction: the bound in this direction, so that most questions are answered by
+        // it.
         let (mut proved, mut open) = (1.0, 2.0);
         while frictions.iter().any(|f| *f > 0.0) && open < 64.0 && form.proves(&self.system, &times(open)) {
             (proved, open) = (open, 2.0 * open);
@@ -103,8 +104,8 @@ impl Uniqueness {
 }
 
 impl Form {
-    /// With the weight and the α under which the bound is largest in the direction of `frictions`; `None` where R itself is
-    /// not positive definite beside its kernel.
+    /// The form with the weight and the α under which the bound is largest in the direction of `frictions`; `None`
+    /// where R itself is not positive definite beside its kernel.
     fn of(system: &ContactSystem, frictions: &[f64]) -> Option<Form> {
         let stiffness = system.pivot_stiffness();
         let k = system.joint_count();
@@ -142,8 +143,8 @@ impl Form {
         best.map(|(_, form)| form)
     }
 
-    /// Estimates of the largest eigenvalues of R_n F R_nᵀ and of F beside the weighted R; `None` where that is not positive
-    /// definite.
+    /// Estimates of the largest eigenvalues of R_n F R_nᵀ and of F beside the weighted R; `None` where that is not
+    /// positive definite.
     fn largest(&self, system: &ContactSystem, frictions: &[f64]) -> Option<[f64; 2]> {
         let factor = Cholesky::new(&(&self.weighted + &self.kernel * self.kernel.transpose()))?;
         let k = self.weighted.nrows();
@@ -239,7 +240,8 @@ mod tests {
         Uniqueness::of(&problem.system).holds(problem)
     }
 
-    /// One pair: the answer is unique for every load just where f < R_ττ / |R_nτ| (Klarbring 1990). Nothing is claimed beyond.
+    /// One pair: the answer is unique for every load just where f < R_ττ / |R_nτ| (Klarbring 1990). Nothing is claimed
+    /// beyond.
     #[test]
     fn of_one_pair_no_more_is_proved_than_holds() {
         for coupling in [0.05, 0.3, 0.6, -0.3] {

@@ -46,7 +46,7 @@ pub struct ContactLcp {
     pub facet_rows: Vec<Vec<Option<usize>>>,
     /// The facets.
     pub polygon: Polygon,
-    /// Of each row of the full LCP: whether its w is the displacement and its z the force ([`super::force_form`]).
+    /// For each row of the full LCP, whether its w is the displacement and its z the force ([`super::force_form`]).
     pub swapped: Vec<bool>,
 }
 
@@ -72,8 +72,8 @@ impl ContactLcp {
         (normals..self.rows.len()).chain(0..normals).collect()
     }
 
-    /// Contact forces, and reserves f λ_n + λ_τ + c, over the primary rows and the unit of force; `forces` are λ over the
-    /// joints, `friction` and `fixed` f and c of every pair.
+    /// Contact forces, and reserves f λ_n + λ_τ + c, over the primary rows and the unit of force; `forces` are λ over
+    /// the joints, `friction` and `fixed` f and c of every pair.
     pub fn force_rows(
         &self,
         system: &ContactSystem,

@@ -1,17 +1,19 @@
-//! Contact problems in space whose joints repeat one another: solved with joints that yield a little, which is then taken
-//! back.
+//! Contact problems in space whose joints repeat one another: solved with joints that yield a little, which is then
+//! taken back.
 //!
-//! No R says λ for every z of joints that repeat one another, and friction in space is not a couple of joints that could change
-//! sides as in [`super::force_form`]. Joints T that self-stress reaches are given a small compliance ε instead:
+//! No R gives λ for every z of joints that repeat one another, and friction in space is not a couple of joints that
+//! could change sides as in [`super::force_form`]. Joints T that self-stress reaches are given a small compliance ε
+//! instead:
 //!
 //! ```text
 //!     y = B p + y₀ + ε λ,     p: z of the independent joints of T,   B = [I; A],   y₀ = (0, h)
 //!     λ_T = [N Nᵀ/ε + B G⁻¹ R_PP H Bᵀ] (y − y₀) + B H (R_PN z_N + RF_P),     G = BᵀB,   H = (G + ε R_PP)⁻¹,   BᵀN = 0
 //! ```
-//! so that R of the yielding system is symmetric, regular where the structure stands, and differs from that of the structure
-//! by rounding only in motions that its joints can make. Its answer is taken to that of the structure by multipliers
-//! (Hestenes, "Multiplier and gradient methods", 1969): y = B p + y₀ + ε (λ − λ′) with λ′ of the answer before, until λ is
-//! λ′. Where self-stress leaves forces undetermined the first answer is, up to ε, that of least norm, and it stays.
+//! so that R of the yielding system is symmetric, regular where the structure stands, and differs from that of the
+//! structure by rounding only in motions that its joints can make. Its answer is taken to that of the structure by
+//! multipliers (Hestenes, "Multiplier and gradient methods", 1969): y = B p + y₀ + ε (λ − λ′) with λ′ of the answer
+//! before, until λ is λ′. Where self-stress leaves forces undetermined the first answer is, up to ε, that of least
+//! norm, and it stays.
 
 use std::sync::Arc;
 
@@ -24,7 +26,7 @@ use super::sums::joint_forces;
 use super::system::{ContactSystem, JointLoad, Yielding};
 use super::written::power_of_two;
 
-/// ε times the largest R_ii: forces lose some 1e5 of the digits of R, and each multiplier gains as much.
+/// ε times the largest R_ii: forces lose a factor of some 1e5 in accuracy, and each multiplier gains as much.
 const COMPLIANCE: f64 = 1.0 / 131_072.0;
 /// A self-stress below this share of the largest belongs to no joint.
 const FELT: f64 = 1e-9;
@@ -179,8 +181,9 @@ impl Yielding {
             .then(|| ContactProblem::new(&self.exact, problem.laws.clone(), &problem.factors))
     }
 
-    /// Puts what the joints really do in the place of what the yielding ones do: z of the repeated joints follows from that of
-    /// the others, and λ of those from R. What is held at 0 stays there. Nothing under a load that is none of the cases.
+    /// Puts what the joints really do in place of what the yielding ones do: z of the repeated joints follows from
+    /// that of the others, and λ of those from R. What is held at 0 stays there. Nothing under a load that is none of
+    /// the cases.
     pub fn put_exactly(&self, problem: &ContactProblem, z: &mut DVector<f64>, forces: &mut [Sum]) {
         let Some(exact) = self.exactly(problem) else { return };
         // λ of joints that yield is known to the rounding of its terms, and so is their z.
@@ -203,8 +206,8 @@ impl Yielding {
         }
     }
 
-    /// Pairs whose forces a motion z leaves undetermined: those that a self-stress reaches which obeys what the open and the
-    /// slipping pairs demand. With `sticking` none slips: where another self-stress may hold another motion.
+    /// Pairs whose forces a motion z leaves undetermined: those that a self-stress reaches which obeys what the open
+    /// and the slipping pairs demand. With `sticking` none slips: where another self-stress may hold another motion.
     pub fn undetermined(&self, problem: &ContactProblem, z: &DVector<f64>, sticking: bool) -> Vec<usize> {
         let Some(form) = &self.exact.force_form else { return Vec::new() };
         let (stress, system) = (&form.self_stress, &self.exact);

@@ -9,7 +9,7 @@ use crate::lcp::problem::NOISE;
 
 /// Largest share of the terms of its own row by which a law may be violated: what rounding leaves of a sum.
 const ROUNDING: f64 = 4.0 * NOISE;
-/// Largest share of the loads that rounding may hide: beside terms that exceed the loads by some 1e9 any load would pass.
+/// Largest share of the loads that rounding may hide: beside terms some 1e9 times the loads, any load would pass.
 const HIDDEN: f64 = 1e-4;
 
 /// How far an answer is from the laws; all as shares, 0 … 1.

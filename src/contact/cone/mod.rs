@@ -1,12 +1,12 @@
 //! Coulomb's cone: the answer in space that obeys |x_τ| ≤ f x_n + c itself, not the friction polygon around it
-//! (method §7, "From the polygon to the cone").
+//! (method §7).
 //!
 //! ```text
 //!   λ = R z + q,    x_n ≥ 0 ⟂ z_n ≥ 0,    |x_τ| ≤ f x_n + c,    x_τ = −(f x_n + c) z_τ / |z_τ|  where z_τ ≠ 0
 //! ```
-//! Newton's method on the natural map of these laws starts from the answer of the polygon, with halved steps; the states
-//! it ends in are polished with residuals in doubled precision, and what comes out is checked afresh against the cone.
-//! Where that fails the search starts again from a point that projections have brought nearer. Every loop ends.
+//! Newton's method on the natural map of these laws starts from the answer of the polygon, with halved steps; the
+//! states it ends in are polished with residuals in doubled precision, and what comes out is checked afresh against the
+//! cone. Where that fails the search starts again from a point that projections have brought nearer. Every loop ends.
 //!
 //! A pair has none, one or two tangential joints: the plane is the case of one.
 
@@ -28,7 +28,7 @@ use super::sum::Sum;
 use crate::lcp::problem::NOISE;
 use crate::watch::Watch;
 
-/// Sweeps of projections before each search: the first one starts where it is told.
+/// Sweeps of projections before each search: the first search starts at the given point.
 const SWEEPS: [usize; 4] = [0, 50, 200, 800];
 
 /// A pair: its law, and the rows of R of its tangential joints. The normal joint of pair i is row i.
@@ -104,10 +104,10 @@ pub enum ConeFailure {
         starts: usize,
         /// The pair that violates its law most, in the best point found.
         pair: usize,
-        /// By which share of the terms of its row.
+        /// The violation as a share of the terms of its row.
         violation: f64,
     },
-    /// Joints that repeat one another press the more the less they yield.
+    /// Joints that repeat one another press the harder the less they yield: the parts do not fit.
     #[error("joints that repeat one another do not come to rest: their gaps leave no room for all of them")]
     DoNotFit,
     /// R, the load or the start has entries that are not numbers.
@@ -170,7 +170,8 @@ impl ConePair {
         }
     }
 
-    /// A vector over the joints in the tangent plane; the second entry is 0 where the pair has one direction.
+    /// The tangential part, at this pair, of a vector over the joints; the second entry is 0 where the pair has one
+    /// direction.
     fn tangential(&self, vector: &DVector<f64>) -> [f64; 2] {
         let mut found = [0.0; 2];
         self.tangents.clone().zip(&mut found).for_each(|(joint, entry)| *entry = vector[joint]);
@@ -189,8 +190,8 @@ fn across(along: [f64; 2], t: usize, u: usize) -> f64 {
 }
 
 impl ConeProblem<'_> {
-    /// r of every joint, a stiffness > 0: R_ii, in the tangent plane of a pair the same along both directions. A joint without
-    /// stiffness takes that of the others: the natural map has the same zeros with any r.
+    /// r of every joint, a stiffness > 0: R_ii, in the tangent plane of a pair the same along both directions. A joint
+    /// without stiffness takes that of the others: the natural map has the same zeros with any r.
     fn scale(&self) -> DVector<f64> {
         let diagonal = self.stiffness.diagonal();
         let largest = diagonal.iter().fold(0.0, |a: f64, b| a.max(*b));
@@ -227,8 +228,8 @@ impl ConeProblem<'_> {
         values.into_iter().zip(terms).map(|(value, magnitude)| Sum { value, magnitude }).collect()
     }
 
-    /// What share of any force hangs on displacements `moved` of some joints: max over the rows of |R moved| / Σ |terms|.
-    /// Where no force feels them it is 1: nothing says that they are rounding.
+    /// What share of any force depends on displacements `moved` of some joints: max over the rows of |R moved| / Σ
+    /// |terms|. Where no force feels them it is 1: nothing says that they are rounding.
     fn share(&self, moved: &[(usize, f64)], forces: &[Sum]) -> f64 {
         let mut felt = false;
         let mut share = 0.0_f64;
@@ -253,7 +254,7 @@ impl ConeProblem<'_> {
         if is_open { fixed } else { fixed.plus(self.pairs[pair].friction(), forces[pair]) }
     }
 
-    /// What a displacement bends: without its part in the kernel, which no force feels.
+    /// The part of a displacement that strains the structure: without its part in the kernel, which no force feels.
     fn bending(&self, z: &DVector<f64>) -> DVector<f64> {
         if self.kernel.ncols() == 0 { z.clone() } else { z - self.kernel * self.kernel.tr_mul(z) }
     }
@@ -300,8 +301,8 @@ impl ConeProblem<'_> {
     }
 }
 
-/// A displacement and what it bends: a motion of the kernel may be as large as it likes, λ = R·bending + load is known to
-/// the digits of its own terms.
+/// A displacement and the part of it that strains the structure: however large a motion of the kernel is, λ = R·bending
+/// + load is known to the digits of its own terms.
 #[derive(Clone, Debug)]
 struct Point {
     z: DVector<f64>,

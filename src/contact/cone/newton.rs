@@ -9,11 +9,11 @@ use crate::watch::Watch;
 
 /// Steps at most.
 const STEPS: usize = 60;
-/// The natural map has to halve within so many steps: what creeps does not arrive.
+/// The natural map has to halve within this many steps: a search that creeps does not arrive.
 const PATIENCE: usize = 12;
-/// A step is halved this often at most.
+/// A step is halved at most this often.
 const HALVINGS: usize = 12;
-/// Share of what a step promises that the natural map has to fall by (Armijo).
+/// The natural map has to fall by at least this share of what a step promises (Armijo).
 const FALL: f64 = 1e-4;
 
 /// Where a search ended: in an answer, or where no step leads down.
@@ -52,7 +52,7 @@ pub(super) fn search(
     Ok(Search { z, states: map.branches, steps })
 }
 
-/// The first of the step, its half, its quarter … that the natural map falls on.
+/// The first of the step, its half, its quarter … along which the natural map falls.
 fn shortened(
     problem: &ConeProblem,
     scale: &DVector<f64>,
@@ -62,7 +62,7 @@ fn shortened(
 ) -> Option<(DVector<f64>, NaturalMap)> {
     let mut share = 1.0;
     for _ in 0..=HALVINGS {
-        // A whole step ends where it says to the last digit: z − z is 0.
+        // A full step ends exactly where it points: z − z is 0.
         let point = z + share * step;
         let next = NaturalMap::at(problem, scale, &point, &problem.forces(&point));
         if next.norm <= (1.0 - FALL * share) * map.norm || next.is_zero {
@@ -157,7 +157,8 @@ impl Equations {
         Some(self.step(&Factor::new(self.matrix.clone()).solve(&self.right)?))
     }
 
-    /// The step of Levenberg and Marquardt, the shorter the smaller the natural map is: also where they are singular.
+    /// The step of Levenberg and Marquardt, damped the less the smaller the natural map is; it exists where the
+    /// equations are singular, too.
     fn damped(&self, norm: f64) -> Option<DVector<f64>> {
         let n = self.moving.len();
         let mut normal = self.matrix.tr_mul(&self.matrix);

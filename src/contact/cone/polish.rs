@@ -1,5 +1,5 @@
-//! The point of a search, polished in its states: Newton's method on the equations of these states alone, with residuals
-//! in doubled precision, so that each row holds to a few ε of its own terms.
+//! The point of a search, polished in its states: Newton's method on the equations of these states alone, with
+//! residuals in doubled precision, so that each row holds to a few ε of its own terms.
 //!
 //! ```text
 //!   open:  λ_n = 0        slip:  λ_τ + b z_τ/|z_τ| = 0,  b = f λ_n + c   (b = c while open)        else z = 0
@@ -20,7 +20,7 @@ const ROUNDS: usize = 5;
 /// Residuals up to this share of their terms are as good as z in f64 can make them.
 const GOOD: f64 = NOISE / 32.0;
 
-/// z with what is held at exactly 0 and the rest put right; as good as it was where no round helps.
+/// z with what is held at exactly 0 and the rest put right; unchanged where no round helps.
 pub(super) fn polished(problem: &ConeProblem, mut z: DVector<f64>, states: &[Branch]) -> Point {
     for (i, (pair, state)) in problem.pairs.iter().zip(states).enumerate() {
         if state.is_closed {
@@ -56,7 +56,7 @@ struct Rows {
     worst: f64,
 }
 
-/// b and z_τ/|z_τ| of a pair that slips; a bound of nothing has no direction.
+/// b and z_τ/|z_τ| of a pair that slips; a bound of 0 has no direction.
 fn friction(problem: &ConeProblem, pair: usize, z: &DVector<f64>, forces: &[Sum]) -> (Sum, [f64; 2]) {
     let slip = problem.pairs[pair].tangential(z);
     let size = length(slip);

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::{ConeFailure, ConeProblem, length};
 use crate::watch::Watch;
 
-/// So many sweeps over the pairs, each pair moved to where its own laws hold under r alone.
+/// Makes `sweeps` sweeps over the pairs, each pair moved to where its own laws hold with r for its stiffness.
 pub(super) fn sweep(
     problem: &ConeProblem,
     scale: &DVector<f64>,

@@ -46,8 +46,8 @@ impl Owned {
         self.solve(&DVector::zeros(self.load.len()))
     }
 
-    /// The largest violation of the laws by z, in plain arithmetic: forces beside the largest force that occurs,
-    /// displacements beside the largest one.
+    /// The largest violation of the laws by z, in plain arithmetic: forces relative to the largest force that occurs,
+    /// displacements to the largest one.
     fn violation(&self, z: &DVector<f64>) -> f64 {
         let force = &self.stiffness * z + &self.load;
         let size = self.load.amax().max(force.amax()).max(1e-300);
@@ -225,8 +225,8 @@ fn of_one_pair_the_answer_is_one_of_all_that_there_are() {
     assert!(slipping > 40, "{slipping}");
 }
 
-/// The same answers from the forces as unknowns: λ ← P(λ − ρ z), z = R⁻¹ (λ − q), P pair by pair. Small friction: there is
-/// one answer.
+/// The same answers from the forces as unknowns: λ ← P(λ − ρ z), z = R⁻¹ (λ − q), P pair by pair. Small friction: there
+/// is one answer.
 #[test]
 fn the_iteration_on_the_forces_ends_in_the_same_answer() {
     let mut rng = ChaCha8Rng::seed_from_u64(9);
@@ -269,8 +269,8 @@ fn the_iteration_on_the_forces_ends_in_the_same_answer() {
     assert!(compared > 40, "{compared}");
 }
 
-/// A rigid body on springs under its contact points, stiff along n and along t: R and RF of the points, the resultant force
-/// and moment about the origin given.
+/// A rigid body on springs under its contact points, stiff along n and along t: R and RF of the points, the resultant
+/// force and moment about the origin given.
 fn body_on_springs(points: &[[f64; 2]], [along, across]: [f64; 2], resultant: [f64; 6], law: PairLaw) -> Owned {
     let m = points.len();
     let mut motions = DMatrix::zeros(3 * m, 6);
@@ -290,8 +290,8 @@ fn body_on_springs(points: &[[f64; 2]], [along, across]: [f64; 2], resultant: [f
     Owned { kernel: motions.qr().q(), ..Owned::new(r, load.as_slice(), &vec![law; m]) }
 }
 
-/// A block of weight 4, its centre off the middle, pushed at 17 degrees through the centre of its friction: it is held up to
-/// f W, its corners slipping one after the other, and nothing is claimed beyond.
+/// A block of weight 4, its centre off the middle, pushed at 17 degrees through the centre of its friction: it is held
+/// up to f W, its corners slipping one after the other, and nothing is claimed beyond.
 #[test]
 fn a_block_on_springs_is_held_to_its_limit() {
     let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];

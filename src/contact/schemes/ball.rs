@@ -1,6 +1,7 @@
-//! f64 numbers with a bound of their error: what a ball says of a sign is proved.
+//! f64 numbers with an error bound: what a ball says of a sign is proved.
 
-/// Of every operation in f64: half a unit in the last place, twice over for the rounding of the radius itself.
+/// Bounds the relative error of an operation in f64: four times half a unit in the last place, as the radius itself is
+/// rounded, too.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 /// What underflow can lose.
 const TINY: f64 = f64::MIN_POSITIVE;
@@ -93,8 +94,8 @@ fn size(row: &[Ball]) -> f64 {
     row.iter().fold(f64::MIN_POSITIVE, |largest, entry| largest.max(entry.middle.abs()))
 }
 
-/// The displacements of `columns` from as many equations, each in terms of the others, by elimination with the relatively
-/// largest pivot; `None` where a pivot may be zero.
+/// The displacements of `columns` from as many equations, each in terms of the others, by elimination with the
+/// relatively largest pivot; `None` where a pivot may be zero.
 pub(crate) fn eliminated(mut equations: Vec<Row>, columns: &[usize]) -> Option<Vec<Row>> {
     let mut solved: Vec<Option<Row>> = vec![None; columns.len()];
     for _ in 0..columns.len() {

@@ -4,7 +4,7 @@
 //! near to R⁻¹ and z₀; the bounds hold for whatever came out, with C ≈ R⁻¹ and r = q + R z₀:
 //!
 //! ```text
-//!   λ_min(R) ≥ μ                               R − (μ + c) 1 has a Cholesky factor in f64 (Rump 2006), c above its rounding
+//!   λ_min(R) ≥ μ                               R − (μ + c) 1 has a Cholesky factor in f64, c ≥ its rounding (Rump)
 //!   |z| ≤ |q| / μ                              from μ |z|² ≤ zᵀR z ≤ −zᵀq
 //!   (z − z₀/2)ᵀR (z − z₀/2) ≤ ρ² = z₀ᵀR z₀ / 4 + |r| |q| / μ
 //!   z_j = C_jᵀR z + (e_j − R C_j)ᵀz,           |C_jᵀR (z − z₀/2)| ≤ √(C_jᵀR C_j) ρ
@@ -17,9 +17,9 @@ use num_rational::BigRational;
 use crate::contact::schemes::ball::Ball;
 use crate::lcp::exact::dyadic::{nearest, rational};
 
-/// Condition of R, scaled to a diagonal near 1, up to which a box is worth its while.
+/// Condition of R, scaled to a diagonal near 1, up to which a box is worth its cost.
 const CONDITION: f64 = 1e10;
-/// Part of the least eigenvalue in f64 that is proved to be below it.
+/// Share of the least eigenvalue, as computed in f64, that is then proved to be a lower bound.
 const SAFE: f64 = 0.5;
 
 /// Lowest and highest z of each of the `joints`; `None` where R is not safely positive definite there.

@@ -2,9 +2,9 @@
 //!
 //! For every choice of states (open O, slip S with its sign σ, else stick) the block with rows R_n (O), R_τ (O), R_τ +
 //! σ f R_n (S) and columns z_n (O), z_τ (O ∪ S) must keep a positive determinant. It is a polynomial in the parameter;
-//! its roots are eigenvalues. Exact search over all choices up to [`SEARCHED`] of them, those of 8 pairs in the plane, sampled beyond. One pair:
-//! f = R_ττ / |R_nτ| (Klarbring 1990). In space a pair slips along a facet d_k of the friction polygon, with the row
-//! d_k·R_τ + f R_n and the column d_k, or between two, with both.
+//! its roots are eigenvalues. Exact search over all choices up to [`SEARCHED`] of them, those of 8 pairs in the plane,
+//! sampled beyond. One pair: f = R_ττ / |R_nτ| (Klarbring 1990). In space a pair slips along a facet d_k of the
+//! friction polygon, with the row d_k·R_τ + f R_n and the column d_k, or between two, with both.
 
 use std::ops::ControlFlow;
 
@@ -68,10 +68,10 @@ enum Root {
     Singular,
 }
 
-/// Smallest parameter s ≥ 0 at which uniqueness may end. `friction` gives f of every pair for a parameter value; it must
-/// be affine in it (each f is the parameter, a multiple of it, or a constant). Only the f of pairs that open are read.
-/// Up to [`SEARCHED`] all choices are examined, beyond that so many blocks drawn with a seed. `observer` hears the
-/// number of blocks examined and may stop the search.
+/// Smallest parameter s ≥ 0 at which uniqueness may end. `friction` gives f of every pair for a parameter value; it
+/// must be affine in it (each f is the parameter, a multiple of it, or a constant). Only the f of pairs that open are
+/// read. Up to [`SEARCHED`] all choices are examined, beyond that this many blocks are drawn at random, from a fixed
+/// seed. `observer` hears the number of blocks examined and may stop the search.
 pub fn critical_friction(
     system: &ContactSystem,
     polygon: Polygon,
@@ -155,7 +155,7 @@ impl<'a> Search<'a> {
         });
         let (at_0, at_1) = (friction(0.0), friction(1.0));
         let m = system.pair_count();
-        // The friction of a pair that never opens does not hang on x_n.
+        // The friction of a pair that never opens does not depend on x_n.
         let ratio = |pair: usize| if system.pairs[pair].law.is_bilateral() { 0.0 } else { root[pair] };
         let is_smooth = |pair: usize| at_0[pair] == 0.0 && at_1[pair] == 0.0;
         Self {

@@ -1,9 +1,9 @@
 //! All answers of a contact problem, by a search over working schemes.
 //!
 //! Depth first, one pair after the other; a partial scheme is cut only where its signs are proved to fail: in balls
-//! ([`crate::contact::schemes::pruning`]), and where these do not cut by the signs and the box of the displacements as a linear
-//! program in exact arithmetic ([`crate::lcp::exact::polyhedron`]). Of a complete scheme it gives all answers, one or a
-//! continuum with its corners and directions. Nothing is accepted or cut by a tolerance.
+//! ([`crate::contact::schemes::pruning`]), and where these do not cut by the signs and the box of the displacements as
+//! a linear program in exact arithmetic ([`crate::lcp::exact::polyhedron`]). Of a complete scheme it gives all answers,
+//! one or a continuum with its corners and directions. Nothing is accepted or cut by a tolerance.
 
 use std::ops::ControlFlow;
 
@@ -21,7 +21,7 @@ use crate::lcp::exact::corners::corners;
 use crate::lcp::exact::dyadic::nearest;
 use crate::lcp::exact::polyhedron::{Polyhedron, State};
 
-/// Undecided pairs from which on the exact linear program pays: without a box, when balls cut little.
+/// From this many undecided pairs on the exact linear program pays: without a box, where balls cut little.
 const WORTH: usize = 3;
 /// The same with a box: measured, it costs as much as some hundred partial schemes in balls.
 const WORTH_BOXED: usize = 5;
@@ -68,7 +68,7 @@ pub struct Enumeration {
     pub visited: u64,
     /// Partial schemes that were cut off.
     pub cut: u64,
-    /// All schemes there are (at most 2⁶⁴ − 1 is told).
+    /// Number of all schemes; 2⁶⁴ − 1 where there are more.
     pub total: u64,
     /// Schemes with too many corners to list them all.
     pub undecided: u64,
@@ -124,7 +124,7 @@ struct Search<'a> {
     observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
     progress: Progress,
     pruning: Pruning<'a>,
-    /// Undecided pairs from which on the exact linear program pays.
+    /// From this many undecided pairs on the exact linear program pays.
     worth: usize,
     choices: Vec<Vec<PairScheme>>,
     solutions: Solutions,

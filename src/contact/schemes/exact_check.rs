@@ -1,10 +1,11 @@
 //! A working scheme proved or refuted in exact arithmetic.
 //!
 //! The f64 data R, RF, f, c, g are rationals; of a contact system from a file they are those of the file, the released
-//! tangential joints of its frictionless pairs among them. The linear equations of the scheme (x_n = 0 where open, x^± = 0 where
-//! slipping, in space x^k = 0 of one facet or two) are solved exactly and the sign of every other quantity is told exactly. The
-//! directions d_k of the polygon are the f64 numbers that they are stored as. The check judges the data as
-//! they are stored: a structure whose loads are exactly at a limit on paper need not be so after rounding to f64.
+//! tangential joints of its frictionless pairs among them. The linear equations of the scheme (x_n = 0 where open, x^±
+//! = 0 where slipping, in space x^k = 0 of one facet or two) are solved exactly and the sign of every other quantity is
+//! determined exactly. The directions d_k of the polygon are the f64 numbers that they are stored as. The check judges
+//! the data as they are stored: a structure whose loads are exactly at a limit on paper need not be so after rounding
+//! to f64.
 
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
@@ -22,7 +23,7 @@ use crate::lcp::exact::dyadic::{parts as parts_of, product, rational, shifted};
 use crate::lcp::exact::rational_solve::{self, Quotients, RationalSolution};
 use crate::lcp::exact::scalar::{BigInt, ratio_to_f64};
 
-/// A force or displacement of the LCP whose sign has been told exactly.
+/// A force or displacement of the LCP whose sign has been determined exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExactSign {
     /// Its pair and couple.
@@ -72,7 +73,7 @@ pub struct ExactCheck {
     pub polygon: Polygon,
     /// Number of released joints.
     pub released: usize,
-    /// Number of signs told.
+    /// Number of signs determined.
     pub signs: usize,
     /// z over the joints, each rounded once, where the equations have one solution.
     pub z: Option<DVector<f64>>,
@@ -201,7 +202,7 @@ fn reserve(pair: usize, facet: usize) -> RowId {
     RowId { pair, couple: RowKind::Facet(facet as u16) }
 }
 
-/// Solves `scheme` (one entry per pair) exactly and tells every sign. `progress` hears the share of the work done,
+/// Solves `scheme` (one entry per pair) exactly and determines every sign. `progress` hears the share of the work done,
 /// 0 … 1, and may stop it.
 pub fn exact_check(
     problem: &ContactProblem,
@@ -282,7 +283,7 @@ impl Signs<'_> {
         (sum + &form.constant * denominator, &form.scale * denominator)
     }
 
-    /// Tells the sign of over / under / scale, scale > 0.
+    /// Determines the sign of over / under / scale, scale > 0, and keeps what is not positive.
     fn tell(&mut self, row: RowId, quantity: Quantity, (over, under): (BigInt, BigInt), scale: f64) {
         self.told += 1;
         if over.is_positive() {
@@ -340,8 +341,8 @@ impl Signs<'_> {
     }
 }
 
-/// Components, and a number > 0, by which their product with z_τ is divided for ζ of a facet, of the slip along it or
-/// between it and another one.
+/// Components and a number > 0: ζ of `facet`, where the slip is along it or between it and `other`, is the product of
+/// these components with z_τ over that number.
 fn slip_along(polygon: Polygon, facet: usize, other: Option<usize>) -> ([f64; 2], f64) {
     let along = polygon.direction(facet);
     let Some(other) = other else { return (along, 1.0) };

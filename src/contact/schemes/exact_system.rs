@@ -54,7 +54,7 @@ impl<'a> ExactSystem<'a> {
         Self::with(problem, &problem.system.stiffness)
     }
 
-    /// With zeros in place of their rounding in R, as proofs are exported.
+    /// The system with zeros in place of their rounding in R, as proofs are exported.
     pub fn without_noise(problem: &'a ContactProblem) -> Self {
         Self::with(problem, &problem.system.stiffness_without_noise())
     }
@@ -70,7 +70,8 @@ impl<'a> ExactSystem<'a> {
         Self { problem, stiffness, constants }
     }
 
-    /// Variables: z of all joints, then pair by pair x_n, the reserves of the facets and, in space, the forms of the slip.
+    /// Variables: z of all joints, then pair by pair x_n, the reserves of the facets and, in space, the forms of the
+    /// slip.
     pub fn variables(&self) -> Vec<PairVariables> {
         let (system, polygon) = (&*self.problem.system, self.problem.polygon);
         let mut next = system.joint_count();
@@ -91,8 +92,8 @@ impl<'a> ExactSystem<'a> {
         system.pairs.iter().enumerate().map(of).collect()
     }
 
-    /// What every answer obeys whatever its scheme: all signs but those of the slips, and the `sides` (joint, lowest and
-    /// highest displacement) of a box that holds it.
+    /// What every answer obeys whatever its scheme: all signs but those of the slips, and the `sides` (joint, lowest
+    /// and highest displacement) of a box that holds it.
     pub fn polyhedron(&self, sides: &[(usize, f64, f64)], go_on: &mut GoOn) -> (Polyhedron, State) {
         let (system, polygon) = (&*self.problem.system, self.problem.polygon);
         let k = system.joint_count();
@@ -245,8 +246,8 @@ fn with_exact_kernel(system: &ContactSystem, mut stored: Vec<Vec<BigRational>>) 
     stored
 }
 
-/// Puts motions into the kernel of R: each is 1 at its own joint of P (`telling`) and 0 at the others of P, Z = [G; 1] over
-/// the other joints N and P. Only R_NN is taken from what is stored, R_NP = −R_NN G and R_PP = Gᵀ R_NN G, which
+/// Puts motions into the kernel of R: each is 1 at its own joint of P (`telling`) and 0 at the others of P, Z = [G; 1]
+/// over the other joints N and P. Only R_NN is taken from what is stored, R_NP = −R_NN G and R_PP = Gᵀ R_NN G, which
 /// differ from it by its rounding.
 pub(crate) fn give_kernel(stiffness: &mut [Vec<BigRational>], telling: &[usize], motions: &[Vec<BigRational>]) {
     let others: Vec<usize> = (0..stiffness.len()).filter(|joint| !telling.contains(joint)).collect();

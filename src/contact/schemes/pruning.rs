@@ -1,9 +1,10 @@
-//! Whether a partial scheme can be completed, told by balls (f64 with error bounds).
+//! Whether a partial scheme can be completed, decided with balls (f64 with error bounds).
 //!
-//! Every quantity is kept as an affine function of the displacements of the pairs not yet decided; deciding a pair eliminates
-//! its displacements, and a sign that fails for all displacements of the others in their box ends the branch. The box: normals
-//! z_n ≥ 0 and, where R is positive definite, that around the ellipsoid zᵀR z ≤ −zᵀq that every answer lies in (zᵀλ ≤ 0 for
-//! every answer; q is RF − R·(g, 0)), with proved bounds ([`crate::contact::schemes::bounding_box`]).
+//! Every quantity is kept as an affine function of the displacements of the pairs not yet decided; deciding a pair
+//! eliminates its displacements, and a sign that fails for all displacements of the others in their box ends the
+//! branch. The box: normals z_n ≥ 0 and, where R is positive definite, that around the ellipsoid zᵀR z ≤ −zᵀq that
+//! every answer lies in (zᵀλ ≤ 0 for every answer; q is RF − R·(g, 0)), with proved bounds
+//! ([`crate::contact::schemes::bounding_box`]).
 
 use num_rational::BigRational;
 
@@ -14,8 +15,8 @@ use crate::contact::schemes::exact_system::ExactSystem;
 use crate::contact::schemes::scheme::{PairScheme, Tangential, slip_forms};
 use crate::lcp::exact::dyadic::{nearest, rational};
 
-/// The dictionary of a partial scheme. Rows: one per joint, pair by pair (n, then the tangential ones), holding λ_j or z_j,
-/// whichever is not fixed. Columns: the undecided joints from `first` on, then the constant.
+/// The dictionary of a partial scheme. Rows: one per joint, pair by pair (n, then the tangential ones), holding λ_j or
+/// z_j, whichever is not fixed. Columns: the undecided joints from `first` on, then the constant.
 pub(crate) struct Level {
     first: usize,
     rows: Vec<Ball>,
@@ -181,8 +182,8 @@ impl<'a> Pruning<'a> {
         })
     }
 
-    /// What a slip asks for, as rows over the undecided displacements: its reserves are zero and, along one facet in space,
-    /// so is the slip across it.
+    /// What a slip asks for, as rows over the undecided displacements: its reserves are zero and, along one facet in
+    /// space, so is the slip across it.
     fn slip_equations<'b>(
         &self,
         pair: usize,

@@ -53,7 +53,8 @@ impl Tangential {
         std::iter::once(Tangential::Stick).chain(slips).collect()
     }
 
-    /// The state in which a pair slips along these facets, released in any order: two are neighbours or nothing holds the pair.
+    /// The state in which a pair slips along these facets, released in any order: two are neighbours or nothing holds
+    /// the pair.
     fn along(facets: &[usize], polygon: Polygon) -> Tangential {
         let count = polygon.facets();
         match *facets {

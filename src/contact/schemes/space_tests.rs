@@ -1,4 +1,5 @@
-//! Working schemes in space: the plane written in space, closed forms, and agreement with Lemke's run on random problems.
+//! Working schemes in space: the plane written in space, closed forms, and agreement with Lemke's run on random
+//! problems.
 
 use std::ops::ControlFlow;
 
@@ -136,9 +137,9 @@ fn the_three_answers_of_the_plane_are_answers_in_space() {
 
 #[test]
 fn critical_friction_of_one_pair_is_that_of_the_plane() {
-    // Along t1 it is R_ττ / |R_nτ| = 1.5; between two facets d the row of the corner is v, d·v = 1, |v| = 1/cos(π/K): of
-    // λ_τ + f λ_n v over (t1, t2) the determinant is R_11 R_22 + f (R_n1 v_1 R_22): 1.5 − f v_1, v_1 = 1 of the corners
-    // beside t1 where d_0 is along t1.
+    // Along t1 it is R_ττ / |R_nτ| = 1.5; between two facets d the row of the corner is v, d·v = 1, |v| = 1/cos(π/K):
+    // of λ_τ + f λ_n v over (t1, t2) the determinant is R_11 R_22 + f (R_n1 v_1 R_22): 1.5 − f v_1, v_1 = 1 of the
+    // corners beside t1 where d_0 is along t1.
     for facets in [4, 8] {
         let found = critical_friction(
             &coulomb_in_space(klarbring_in_space()),
