@@ -12,7 +12,7 @@ use super::sparse::SymmetricSparse;
 use crate::doubled::Real;
 use crate::model::structure::{Spring, Structure};
 
-/// Terms of one block of work between two looks at the watcher.
+/// Elements that are assembled between two looks at the watcher.
 const ELEMENTS_PER_LOOK: usize = 4096;
 
 /// K on the base dofs, with neither supports nor ties nor joints. Elements inside a rigid body are left out: nothing

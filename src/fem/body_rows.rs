@@ -1,7 +1,7 @@
 //! The rows that hold the nodes of a rigid body to its first node, and what they do to nodal forces.
 //!
 //! ```text
-//!     u_i − u_0 − θ × (x_i − x_0) = 0     a row per coordinate of each node after the first; each rotation is one class
+//!     u_i − u_0 − θ × (x_i − x_0) = 0     a row per coordinate of each node but the first; each rotation is one class
 //! ```
 //!
 //! They are reduced before the joints, like joints whose z is always zero. The forces inside a body are their

@@ -1,4 +1,5 @@
-//! Classes of equal displacement components: what supports, ties and the rotations of rigid bodies make of the base dofs.
+//! Classes of equal displacement components: what supports, ties and the rotations of rigid bodies make of the base
+//! dofs.
 
 use std::collections::BTreeMap;
 
@@ -16,12 +17,12 @@ pub struct Classes {
     /// The classes on which some load case imposes a displacement, with the numbers of those displacements in the rows
     /// of the joints: they follow the joints.
     pub settled: BTreeMap<u32, u32>,
-    /// Of the rotations of rigid bodies the distance at which they are reduced as a displacement.
+    /// For the rotations of rigid bodies, the distance at which each is reduced as a displacement.
     pub reach: BTreeMap<u32, f64>,
 }
 
 impl Classes {
-    /// Of all base dofs; the displacements imposed on supports are numbered behind the joints.
+    /// The classes of all base dofs; the displacements imposed on supports are numbered after the joints.
     pub fn new(structure: &Structure, dofs: &Dofs, joints: usize) -> Classes {
         let mut groups = Groups::new(dofs.count());
         for tie in &structure.ties {
@@ -56,14 +57,14 @@ impl Classes {
         Classes { class, held, settled, reach }
     }
 
-    /// What one unit of the reduced unknown of a class is divided by in the rows of the bodies and joints: a length of
-    /// rotations (radians become displacements), 1 of translations.
+    /// What one unit of the reduced unknown of a class is divided by in the rows of the bodies and joints: a length for
+    /// rotations (radians become displacements), 1 for translations.
     pub fn unit(&self, class: u32) -> f64 {
         self.reach.get(&class).copied().unwrap_or(1.0)
     }
 }
 
-/// Of each class of rotations of bodies the reach of the largest body, a power of two: a rotation is reduced as the
+/// For each class of rotations of bodies, the reach of the largest body, a power of two: a rotation is reduced as the
 /// displacement at that distance, so that coefficients compare.
 fn reaches(structure: &Structure, dofs: &Dofs, class: &[u32]) -> BTreeMap<u32, f64> {
     let mut reaches = BTreeMap::new();

@@ -39,9 +39,9 @@ impl MainSystem {
         self.refine_if_lost(structure, watch)
     }
 
-    /// Where rounding may take too much of R or RF: RF and displacements in doubled precision, which costs a few solutions.
-    /// R too, which costs one for each of its columns, where it is measured to be wrong: the field of a load may bend the whole
-    /// structure where those of the joints do not.
+    /// Where rounding may cost R or RF too much, computes RF and displacements in doubled precision, which takes a few
+    /// solutions; R too, which takes one for each of its columns, where it is measured to be wrong: the field of a load
+    /// may bend the whole structure where those of the joints do not.
     pub(super) fn refine_if_lost(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
         self.amplification = self.worst_amplification();
         // Each term of uᵀ K u is off by ε at random, and there are as many as unknowns.
@@ -107,8 +107,8 @@ impl MainSystem {
         }
     }
 
-    /// Σ|u||K||u| over uᵀ K u, the largest of a random dislocation that is not a motion of the kernel and of the load
-    /// cases on the main system.
+    /// Σ|u||K||u| over uᵀ K u, the largest over the load cases on the main system and a random dislocation that is not
+    /// a motion of the kernel.
     fn worst_amplification(&self) -> f64 {
         let k = self.joints.len();
         let mut state = 0.37;

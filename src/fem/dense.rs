@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// A = U diag(σ) Vᵀ, V square; σ descending, padded with zeros to the number of columns.
 pub struct Svd {
-    /// Left singular vectors that belong to the nonzero-length part, rows × min(rows, columns).
+    /// Left singular vectors, rows × min(rows, columns).
     pub u: DMatrix<f64>,
     /// One per column of A.
     pub sigma: Vec<f64>,
@@ -35,7 +35,7 @@ pub fn svd(a: &DMatrix<f64>) -> Option<Svd> {
     })
 }
 
-/// Eigenvalues (ascending) and eigenvectors of a symmetric matrix; `None` if it did not converge.
+/// Eigenvalues (ascending) and eigenvectors (columns) of a symmetric matrix; `None` if it did not converge.
 pub fn symmetric_eigen(a: &DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
     let eigen = view(a).self_adjoint_eigen(Side::Lower).ok()?;
     let values = eigen.S().column_vector().iter().copied().collect();

@@ -4,12 +4,12 @@ use crate::doubled::Real;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
 
-/// Numbers of the nodal components ("base dofs"): the translations at every node, rotations where a frame bar is rigidly
-/// attached and at the nodes of rigid bodies; of a superelement what its rows are.
+/// Numbers of the nodal components ("base dofs"): the translations at every node, rotations where a frame bar is
+/// rigidly attached and at the nodes of rigid bodies; of a superelement the components of its rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dofs {
     first: Vec<u32>,
-    /// Whether there is each component: nodes of a superelement have those of its dofs.
+    /// Whether each component exists: nodes of a superelement have those of its dofs.
     has: Vec<[bool; 6]>,
     count: usize,
     /// Rotations of nodes at which all frame bars are hinged.
@@ -106,8 +106,8 @@ impl Dofs {
     }
 }
 
-/// The (side, (base dof, coefficient)) of a joint, zero coefficients left out; side 0 is `node`. Coefficients make lengths
-/// of the unknowns: those of translations have no unit, those of rotations are lengths.
+/// The (side, (base dof, coefficient)) of a joint, zero coefficients left out; side 0 is `node`. Coefficients make
+/// lengths of the unknowns: those of translations have no unit, those of rotations are lengths.
 pub fn joint_dofs<'a>(joint: &'a Joint, dofs: &'a Dofs) -> impl Iterator<Item = (usize, (usize, f64))> + 'a {
     joint
         .terms

@@ -11,15 +11,15 @@ pub struct ElasticCurves<'a> {
 }
 
 impl<'a> ElasticCurves<'a> {
-    /// Under Σ factor·case; without factors those of a motion that no load goes along with.
+    /// Under Σ factor·case; without factors those of a motion without loads.
     pub fn of(structure: &'a Structure, factors: &[f64]) -> Self {
         // loads on anything else, of which there may be many, bend no bar
         let factors = if structure.elements.iter().any(|element| element.bends()) { factors } else { &[] };
         ElasticCurves { structure, acting: ActingLoads::of(structure, factors) }
     }
 
-    /// Displacements (u_x, u_y, u_z) of places of an element, these shares of its length from its start (ascending), under the displacements
-    /// u of the nodes; `None` of one that does not bend.
+    /// Displacements (u_x, u_y, u_z) of an element at these shares of its length from its start (ascending), under the
+    /// displacements u of the nodes; `None` for one that does not bend.
     pub fn places(&self, element: usize, u: &[[f64; 6]], shares: &[f64]) -> Option<Vec<[f64; 3]>> {
         let slots = slots(self.structure.elements.get(element)?);
         let rows = slots.into_iter().map(|(node, component)| u.get(node).map_or(0.0, |u| u[component as usize]));

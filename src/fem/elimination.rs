@@ -64,8 +64,8 @@ impl Elimination {
     /// The joints that repeat others.
     ///
     /// # Errors
-    /// Bodies that supports and ties hold more often than they can move; all joints that supports, ties and bodies alone
-    /// hold.
+    /// Bodies that supports and ties hold more often than they can move; all joints that supports, ties and bodies
+    /// alone hold.
     pub fn repeated(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Vec<Repeated>, MainSystemError> {
         let classes = Classes::new(structure, dofs, joints.len());
         let mut reduction = JointReduction::default();
@@ -257,7 +257,8 @@ impl Elimination {
         }
     }
 
-    /// S s on the base dofs, lengths and radians: what follows the imposed displacements `s` with all joints on and v = 0.
+    /// S s on the base dofs, lengths and radians: what follows the imposed displacements `s` with all joints on and v =
+    /// 0.
     pub fn settled(&self, s: &[f64]) -> Vec<f64> {
         let row = |row: &Row| match row {
             Row::Held(number) => number.map_or(0.0, |number| s[number as usize]),
@@ -279,7 +280,7 @@ impl Elimination {
     }
 
     /// Takes the forces inside rigid bodies out of nodal forces: f − Aᵀ μ with μ = G_Aᵀ f. What is left is for supports
-    /// and ties; in balance it is nothing where there are none.
+    /// and ties; in balance it is zero where there are none.
     pub fn take_out_body_forces<T: Real>(&self, forces: &mut [T]) {
         let mut inner = vec![T::zero(); self.bodies().len()];
         for (dof, force) in forces.iter().enumerate() {
@@ -294,7 +295,7 @@ impl Elimination {
         }
     }
 
-    /// Adds to the sums of magnitudes of nodal forces what of them the bodies hand on.
+    /// Adds to the sums of magnitudes of nodal forces the part of them that the bodies hand on.
     pub fn add_body_forces(&self, magnitudes: &mut [f64]) {
         let mut inner = vec![0.0; self.bodies().len()];
         for (dof, magnitude) in magnitudes.iter().enumerate() {
@@ -310,7 +311,7 @@ impl Elimination {
     }
 }
 
-/// The idle spins that there are displacements for.
+/// The idle spins that have displacements to be held.
 fn held_spins(structure: &Structure) -> Vec<IdleSpin> {
     let turns = || !structure.rigid.is_empty() || structure.elements.iter().any(|element| element.bends());
     if structure.dimension == Dimension::Plane || !turns() {

@@ -25,8 +25,8 @@ impl MainSystem {
         self.f.iter().zip(factors).map(|(f, factor)| factor * f.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>()).sum()
     }
 
-    /// ½ (F_a + F_b)·(u_b − u_a), force · length, > 0 where loads give energy away: the work on the way between two states, straight in forces and displacements; of the
-    /// loads and of the reactions of supports that settle.
+    /// ½ (F_a + F_b)·(u_b − u_a), force · length, > 0 where loads give energy away: the work of the loads, and of the
+    /// reactions of supports that settle, from one state to the other, where forces and displacements change linearly.
     pub fn work_between(&self, a: &Loaded<'_>, b: &Loaded<'_>) -> f64 {
         let of_loads = self.work(a.factors, b.u) - self.work(a.factors, a.u) + self.work(b.factors, b.u)
             - self.work(b.factors, a.u);

@@ -42,7 +42,7 @@ pub struct BalancedState<'a> {
     pub force: &'a DVector<f64>,
 }
 
-/// The largest residual beside the forces that meet there and what rounding may leave.
+/// The largest residual relative to the forces that meet there, beyond what rounding may leave.
 fn largest_share(residual: &[f64], scale: &[f64], rounding: &[f64]) -> f64 {
     let shares = residual.iter().zip(scale.iter().zip(rounding)).map(|(r, (scale, rounding))| {
         let size = scale + rounding / TOLERANCE;
@@ -103,9 +103,9 @@ impl MainSystem {
         values
     }
 
-    /// Of each state an upper bound of its compatibility and equilibrium residuals, from displacements that nobody is shown:
-    /// 1e-9 or less where the residuals are. Where rounding alone explains what is left at every node, the forces that
-    /// meet there need not be known; elsewhere both are computed as for an answer that is shown.
+    /// An upper bound of the compatibility and equilibrium residuals of each state, from displacements that are not
+    /// shown: 1e-9 or less where the residuals are. Where rounding alone explains what is left at every node, the
+    /// forces that meet there need not be known; elsewhere both are computed as for an answer that is shown.
     pub fn equilibrium_bounds(&self, structure: &Structure, states: &[BalancedState<'_>]) -> Vec<f64> {
         let whole = |state: &BalancedState<'_>| {
             let u = self.displacements(state.factors, &state.dislocation);
@@ -137,8 +137,8 @@ impl MainSystem {
         self.unheld(magnitudes)
     }
 
-    /// Largest |K u − F − Bᵀ λ| of a component that no support holds beside the forces that meet there, in the sense
-    /// of this module: at most 1e-9 if every node is balanced.
+    /// Largest |K u − F − Bᵀ λ| of a component that no support holds, relative to the forces that meet there, in the
+    /// sense of this module: at most 1e-9 if every node is balanced.
     pub fn equilibrium_residual(
         &self,
         structure: &Structure,
@@ -243,8 +243,8 @@ impl MainSystem {
         let mut rows: Vec<f64> =
             std::iter::zip(&terms, &diagonal).map(|(terms, k)| row * terms + unsolved * k.sqrt()).collect();
         let field = std::iter::zip(&terms, &base).map(|(terms, u)| terms * u.abs()).sum::<f64>().sqrt();
-        // Balancing RF on the motions of the kernel spreads its rounding over all joints that feel them, also that of joints
-        // that do not: they enter with the rounding of Z, whose columns are of length one.
+        // Balancing RF on the motions of the kernel spreads its rounding over all joints that feel them, also that of
+        // joints that do not: they enter with the rounding of Z, whose columns are of length one.
         let loads: Vec<f64> = (0..self.joints.len())
             .map(|joint| std::iter::zip(&self.rf, factors).map(|(rf, factor)| (rf[joint] * factor).abs()).sum())
             .collect();

@@ -30,7 +30,8 @@ pub enum MainSystemError {
         /// How it moves.
         direction: FreeDirection,
     },
-    /// The structure stands, but by so little of its stiffest part that not even doubled precision can solve it.
+    /// The structure stands, but on so small a share of the stiffness of its stiffest part that not even doubled
+    /// precision can solve it.
     #[error(
         "the stiffnesses differ too much to be solved: {stiffest} is {contrast:.0e} times as stiff as {softest}; \
          make the stiff part rigid by supports or ties, or bring the two closer together"
@@ -45,7 +46,7 @@ pub enum MainSystemError {
         /// How many times as stiff.
         contrast: f64,
     },
-    /// The factorization met numbers that are none.
+    /// The factorization met NaN or infinity.
     #[error("the stiffness matrix is not finite: check the sizes, materials and stiffnesses of the model")]
     NotFinite,
     /// A moment on a node that has no rotation: no frame bar is rigidly attached to it.
@@ -108,7 +109,7 @@ pub enum MainSystemError {
         /// The file of K.
         file: String,
     },
-    /// Memory ran out although the estimate fitted.
+    /// Memory ran out although the estimate was within it.
     #[error("out of memory while {doing}: use fewer divisions or free some memory")]
     OutOfMemory {
         /// The step of the work.

@@ -66,7 +66,7 @@ impl MainSystem {
         all.map(|((v, (_, z)), settled)| self.expanded(v, z, settled.as_deref())).collect()
     }
 
-    /// The right side of K_m v = Tᵀ (F − K S s) − C z, in the place of v.
+    /// The right side of K_m v = Tᵀ (F − K S s) − C z, in place of v.
     fn loaded(&self, factors: &[f64], z: &DVector<f64>) -> RightSide {
         assert_eq!(z.len(), self.joints.len(), "a z for every joint");
         assert_eq!(factors.len(), self.f.len(), "a factor for every load case");
@@ -93,8 +93,8 @@ impl MainSystem {
         u
     }
 
-    /// z (lengths) of the [repeated](Self::repeated) joints under each load case per unit factor where no independent joint moves:
-    /// what supports that settle make of them.
+    /// z (lengths) of the [repeated](Self::repeated) joints under each load case per unit factor where no independent
+    /// joint moves: what supports that settle make of them.
     pub fn repeated_offsets(&self) -> Vec<Vec<f64>> {
         let of = |settled: &Option<Vec<f64>>, joint: usize| {
             let Some(settled) = settled else { return 0.0 };

@@ -45,8 +45,8 @@ pub struct Factor {
 }
 
 impl Factor {
-    /// Orders and factorizes K_m (scaled in place) with the terms (row, joint, value) of C for `joints` joints; the rows
-    /// marked as last are ordered behind all others where that costs less.
+    /// Orders and factorizes K_m (scaled in place) with the terms (row, joint, value) of C for `joints` joints; the
+    /// rows marked as last are ordered behind all others where that costs less.
     ///
     /// Where rounding makes a pivot fail, the factor is that of a slightly shifted K_m ([`Factor::is_shifted`]): good
     /// for refinement, but neither for R nor for a verdict on the structure.
@@ -61,7 +61,7 @@ impl Factor {
         watch: &dyn Watch,
     ) -> Result<Factor, MainSystemError> {
         if k_m.order() == 0 {
-            // Everything is held. One idle unknown spares all that follows the empty case.
+            // Everything is held. With one idle unknown, nothing that follows has to deal with an empty matrix.
             *k_m = SymmetricSparse { column_start: vec![0, 1], rows: vec![0], values: vec![1.0] };
         }
         let idle = Places { node: &[0], coordinates: &[[0.0; 3]], last: &[false] };

@@ -1,9 +1,9 @@
 //! Which order of elimination costs less: the unknowns that joints tie to others behind the rest, or among them.
 //!
-//! Behind the rest they leave the bodies apart before, and only the body that C belongs to carries the rows of z; but
-//! they end in one dense block with all of z, with about as many unknowns as joints:
-//! the cube of their number. Among the rest each cut through the bodies reaches only the joints on its own stretch, and
-//! all of them carry rows of z. Counted for the matrix at hand.
+//! Behind the rest, they keep the bodies apart up to there, and only the body that C belongs to carries the rows of z;
+//! but they end in one dense block with all of z, with about as many unknowns as joints: the cube of their number.
+//! Among the rest each cut through the bodies reaches only the joints on its own stretch, and all of them carry rows of
+//! z. Counted for the matrix at hand.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::linalg::cholesky::simplicial::{
@@ -54,8 +54,8 @@ pub fn best_order(
 /// The dense block is what the other order can save: below this share of all operations it is not tried.
 const WORTH_TRYING: f64 = 0.25;
 
-/// Multiplications of nested dissection for a square plate of so many unknowns, two to a node: 829/84 · 8 of the number of
-/// nodes to the power 3/2 (George 1973).
+/// Multiplications of nested dissection for a square plate of this many unknowns, two to a node: 829/84 · 8 of the
+/// number of nodes to the power 3/2 (George 1973).
 fn dissected(unknowns: usize) -> f64 {
     829.0 / 84.0 * 8.0 * (unknowns as f64 / 2.0).powf(1.5)
 }

@@ -1,9 +1,9 @@
-//! Rotations that move nothing and that nothing resists. They are held (`body_rows`), and loads that would drive them are
-//! refused (`outline`).
+//! Rotations that move nothing and that nothing resists. They are held (`body_rows`), and loads that would drive them
+//! are refused (`outline`).
 //!
-//! A part whose nodes all lie on one line can spin about it, a node to which bars hand on only their torque can turn about
-//! any axis. Such are bars between ball joints, divided or not, rigid bodies of which only displacements are held, and
-//! nodes between hinges:
+//! A part whose nodes all lie on one line can spin about it, a node to which bars hand on only their torque can turn
+//! about any axis. Such are bars between ball joints, divided or not, rigid bodies of which only displacements are
+//! held, and nodes between hinges:
 //!
 //! ```text
 //!     s_p a_p, θ_n     spin of each part on a line about its axis a_p, rotation of each lone node
@@ -27,7 +27,7 @@ const NULL: f64 = 1024.0 * f64::EPSILON;
 pub struct IdleSpin {
     /// The part at which it is held.
     pub part: u32,
-    /// Unit vector: about which the part is held.
+    /// Unit vector of the axis about which the part is held.
     pub axis: [f64; 3],
     /// By how much each node turns, those of the part first. Where there are none, there is no displacement to be held.
     pub turns: Vec<(usize, [f64; 3])>,

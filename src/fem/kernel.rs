@@ -1,4 +1,4 @@
-//! The kernel of R, made exact (method §4, "Zero").
+//! The kernel of R, made exact (method §2).
 //!
 //! R z = 0 exactly for z = B u, u in ker K. The rigid motions of loose parts give Z to rounding; R is then replaced
 //! by (1 − Z Zᵀ) R (1 − Z Zᵀ), so that mechanisms are free to the last digit.

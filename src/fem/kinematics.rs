@@ -1,5 +1,5 @@
-//! How a structure could move with its contact joints off, told from its parts alone: a look at a file that factorizes
-//! nothing.
+//! How a structure could move with its contact joints off, judged from its parts alone: a look at a file without any
+//! factorization.
 
 use super::element::stiffness;
 use super::error::MainSystemError;
@@ -12,8 +12,8 @@ use crate::model::structure::Structure;
 use crate::watch::Watch;
 
 /// Elements and springs whose stiffnesses differ by no more than this leave no doubt whether what holds a part holds it
-/// in the digits of f64 and beyond; the softest shape of n membranes is 1/n⁴ as stiff as they are, and doubled precision
-/// resolves 1e-22.
+/// in the digits of f64 and beyond; the softest shape of n membranes is 1/n⁴ as stiff as they are, and doubled
+/// precision resolves 1e-22.
 const CONTRAST: f64 = 1e6;
 
 /// Elements looked at between two looks at the watcher.
@@ -48,8 +48,8 @@ impl Kinematics {
         &self.motions
     }
 
-    /// Whether there are surely no others: no bars, no superelement, not too many parts that hang together, and no part
-    /// so much softer than another that only the numbers could tell whether it holds.
+    /// Whether there are surely no others: no bars, no superelement, not too many connected parts, and no part so much
+    /// softer than another that only the numbers could tell whether it holds.
     pub fn is_complete(&self) -> bool {
         self.complete
     }

@@ -51,7 +51,8 @@ pub fn load_vectors(structure: &Structure, dofs: &Dofs) -> Result<Vec<Vec<f64>>,
     Ok(vectors)
 }
 
-/// Imposed displacements (lengths and radians) of every base dof per load case and unit factor, S s; nothing for a case without settlements.
+/// Imposed displacements (lengths and radians) of every base dof per load case and unit factor, S s; `None` for a case
+/// without settlements.
 ///
 /// # Errors
 /// Supports that move as one by ties, of which some settle differently.

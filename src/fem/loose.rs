@@ -221,7 +221,7 @@ impl<'a> Unknowns<'a> {
         Unknowns { structure, dofs, parts, of_part, count, centre, size }
     }
 
-    /// Displacement of a node as it moves with a part; of rotations what they are times `size`.
+    /// Displacement of a node as it moves with a part; rotations are multiplied by `size`.
     fn moved(&self, node: usize, part: u32, component: Component) -> Terms {
         let unknowns = self.of_part[&part];
         let arm = way(self.centre, self.structure.nodes[node].position).map(|arm| arm / self.size);
@@ -251,7 +251,7 @@ impl<'a> Unknowns<'a> {
         for &node in &cluster.nodes {
             for &other in &self.parts.at_node[node][1..] {
                 for &component in self.structure.dimension.translations() {
-                    // Of a displacement that a superelement does not know nothing follows for it.
+                    // A displacement that is no dof of the superelement does not move its part.
                     if given.as_ref().is_some_and(|given| !given.contains(&(node, component))) {
                         continue;
                     }

@@ -72,15 +72,15 @@ pub struct MainSystem {
     pub(super) settled: Vec<Option<Vec<f64>>>,
     /// K in doubled precision, where f64 loses too much of the structure's stiffness.
     pub(super) doubled: Option<Arc<SymmetricSparse<Doubled>>>,
-    /// Σ|u||K||u| over uᵀ K u, the largest that was met: how much R and RF lose to rounding; 1 where what loses was made in
-    /// doubled precision.
+    /// Σ|u||K||u| over uᵀ K u, the largest that was met: how much R and RF lose to rounding; 1 where what loses was
+    /// made in doubled precision.
     pub(super) amplification: f64,
     pub(super) factor: Arc<Factor>,
     pub(super) c: Vec<Coupling>,
     pub(super) r: DMatrix<f64>,
     pub(super) rf: Vec<DVector<f64>>,
     pub(super) z: DMatrix<f64>,
-    /// Of the first of the motions; internal ones follow.
+    /// The kernel of the first of the motions; internal ones follow.
     pub(super) rigid: RigidKernel,
     /// Column j of `z` is B applied to Σ_i coefficients[(i, j)] · motion i; r × r.
     pub(super) coefficients: DMatrix<f64>,
@@ -99,8 +99,8 @@ impl fmt::Debug for MainSystem {
 }
 
 impl MainSystem {
-    /// Assembles, factorizes and condenses the structure to its joints; those that [repeat](Repeated) others are left out
-    /// of R, RF and the kernel.
+    /// Assembles, factorizes and condenses the structure to its joints; those that [repeat](Repeated) others are left
+    /// out of R, RF and the kernel.
     ///
     /// # Errors
     /// Bodies held too often, joints held by supports, ties and bodies, a mechanism, an element without shape, a moment
@@ -249,7 +249,8 @@ impl MainSystem {
         &self.repeated
     }
 
-    /// R, force per length, k × k: rows and columns in the order of the independent joints; exactly symmetric, R Z = 0 to rounding.
+    /// R, force per length, k × k: rows and columns in the order of the independent joints; exactly symmetric, R Z = 0
+    /// to rounding.
     pub fn stiffness(&self) -> &DMatrix<f64> {
         &self.r
     }

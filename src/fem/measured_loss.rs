@@ -1,9 +1,9 @@
 //! Whether the R of the f64 factor can be believed where an estimate of its rounding cannot tell: measured on a few
 //! dislocations, against K in doubled precision.
 //!
-//! The estimate of [`MainSystem::refine_if_lost`] counts the rounding of every term of uᵀ K u; in plates of long elements
-//! those are large, and the errors of neighbours cancel. What counts is what R is used for: rows of R z, in which every
-//! zero test allows for rounding of the size √R_jj Σ_k √R_kk |z_k| (method §4, "Zero").
+//! The estimate of [`MainSystem::refine_if_lost`] counts the rounding of every term of uᵀ K u; in plates of long
+//! elements those are large, and the errors of neighbours cancel. What counts is what R is used for: rows of R z, in
+//! which every zero test allows for rounding of the size √R_jj Σ_k √R_kk |z_k| (method §4, "Zero").
 
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
@@ -17,13 +17,13 @@ use crate::watch::Watch;
 /// R z is believed up to this share of √R_jj Σ_k √R_kk |z_k| in every row j: a quarter of what is noise in the pivots.
 pub(super) const BELIEVED: f64 = 64.0 * f64::EPSILON;
 
-/// Random dislocations, normally distributed. An error b of a row gives |bᵀ ω| ≤ ‖b‖/10 for all of three by chance in less
-/// than one of a thousand cases (Halko, Martinsson, Tropp 2011, lemma 4.1).
+/// Random dislocations, normally distributed. An error b of a row gives |bᵀ ω| ≤ ‖b‖/10 for all of three by chance in
+/// less than one of a thousand cases (Halko, Martinsson, Tropp 2011, lemma 4.1).
 const RANDOM: u32 = 3;
 
 impl MainSystem {
-    /// Whether every row of R z is right, up to [`BELIEVED`], for random dislocations z, each joint by as much as its own
-    /// stiffness bears, and for the smooth ones that cost least: all joints alike, and more and more along them.
+    /// Whether every row of R z is right, up to [`BELIEVED`], for random dislocations z, each joint by as much as its
+    /// own stiffness bears, and for the smooth ones that cost least: all joints alike, and more and more along them.
     ///
     /// # Errors
     /// Interrupted.

@@ -12,9 +12,9 @@ pub const DENSE: usize = 240;
 /// Σ coefficient · unknown.
 pub type Terms = Vec<(usize, f64)>;
 
-/// Basis of the null space, in echelon form: each vector has a leading one where the others are 0. Singular values below
-/// the share `null` of the largest count as zero, and in an elimination what is below that share of the terms it sums.
-/// `None` if the decomposition does not converge.
+/// Basis of the null space, in echelon form: each vector has a leading one where the others are 0. Singular values
+/// below the share `null` of the largest count as zero, and in an elimination what is below that share of the terms it
+/// sums. `None` if the decomposition does not converge.
 pub fn null_basis(rows: &[Terms], columns: usize, null: f64) -> Option<DMatrix<f64>> {
     if rows.is_empty() {
         return Some(DMatrix::identity(columns, columns));

@@ -1,8 +1,9 @@
 //! The order in which the unknowns of the main system are eliminated: nested dissection of its nodes.
 //!
-//! The nodes are cut in two where the fewest of them touch the other side, straight across one of the axes; the cut comes behind both halves, and so on in each half. What is small enough is ordered by approximate
-//! minimum degree. Of a plate this leaves less fill than minimum degree alone, and much less where many rows have to
-//! come last anyway: a half then reaches only those that it touches.
+//! The nodes are cut in two where the fewest of them touch the other side, straight across one of the axes; the cut
+//! comes behind both halves, and so on in each half. What is small enough is ordered by approximate minimum degree. Of
+//! a plate this leaves less fill than minimum degree alone, and much less where many rows have to come last anyway: a
+//! half then reaches only those that it touches.
 
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
@@ -16,7 +17,7 @@ use super::threads::can_spread;
 use super::watch::check_stop;
 use crate::watch::Watch;
 
-/// So many nodes are not cut further.
+/// A stretch of at most this many nodes is not cut further.
 const LEAF: usize = 64;
 /// Halves of more nodes are ordered on two threads.
 const WORTH_SPREADING: usize = 4096;

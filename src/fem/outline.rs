@@ -27,8 +27,8 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Numbers the displacements, tells joints that repeat others from those that are held, eliminates what is held, and
-    /// puts the loads on the nodes.
+    /// Numbers the displacements, tells joints that repeat others from those that are held, eliminates what is held,
+    /// and puts the loads on the nodes.
     ///
     /// # Errors
     /// As [`MainSystem::new`](super::MainSystem::new) up to the assembly.

@@ -1,8 +1,8 @@
 //! Parts of a structure: elements that can only move as one rigid body.
 //!
-//! They have an edge in common (solids a face), or are frame bars rigidly attached to one node, or have two nodes in one
-//! rigid body (solids three that are not on one line); a lone node is a part without rotation. A part of a superelement
-//! moves as its stiffness lets it. Parts that share a node are pinned there.
+//! They have an edge in common (solids a face), or are frame bars rigidly attached to one node, or have two nodes in
+//! one rigid body (solids three that are not on one line); a lone node is a part without rotation. A part of a
+//! superelement moves as its stiffness lets it. Parts that share a node are pinned there.
 
 use crate::model::groups::Groups;
 use crate::model::structure::{Component, Structure};

@@ -25,7 +25,7 @@ pub struct MemberForces {
     pub pieces: Vec<Piece>,
 }
 
-/// Stress of one membrane element at its centre, tension positive.
+/// Stress of one area or solid element at its centre, tension positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneStress {
     /// Index into [`Structure::elements`].
@@ -34,7 +34,7 @@ pub struct MembraneStress {
     pub stress: Stress,
 }
 
-/// Stress at a node, tension positive: the mean of what its membrane elements say there.
+/// Stress at a node, tension positive: the mean of what the area and solid elements around it say there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeStress {
     /// The node.
@@ -100,7 +100,7 @@ impl MainSystem {
         members
     }
 
-    /// Stresses at the centres of all membrane elements under the displacements `u` and Σ factor·case.
+    /// Stresses at the centres of all area and solid elements under the displacements `u` and Σ factor·case.
     pub fn element_stresses(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MembraneStress> {
         let loads = ActingLoads::of(structure, factors);
         let stresses = (0..structure.elements.len()).filter_map(|index| {
@@ -111,8 +111,8 @@ impl MainSystem {
         stresses.collect()
     }
 
-    /// Stresses at all nodes of membrane elements, in the order of the nodes: means over the elements that meet there,
-    /// each extrapolated from the points where its stresses are best.
+    /// Stresses at all nodes of area and solid elements, in the order of the nodes: means over the elements that meet
+    /// there, each extrapolated from the points where its stresses are best.
     pub fn node_stresses(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<NodeStress> {
         let loads = ActingLoads::of(structure, factors);
         let mut sums = vec![(Stress::default(), 0_u32); structure.nodes.len()];
@@ -133,8 +133,8 @@ impl MainSystem {
             .collect()
     }
 
-    /// Force, or moment, of every spring, > 0 where it is stretched, in the order of [`Structure::springs`]; on a term's
-    /// component it acts with minus the term's factor.
+    /// Force, or moment, of every spring, > 0 where it is stretched, in the order of [`Structure::springs`]; on a
+    /// term's component it acts with minus the term's factor.
     pub fn spring_forces(&self, structure: &Structure, u: &Displacements) -> Vec<f64> {
         structure.springs.iter().map(|s| spring::force(s, &u.0)).collect()
     }

@@ -31,8 +31,8 @@ const CONVERGED: f64 = 1e-48;
 /// Steps without progress after which they end.
 const PATIENCE: usize = 8;
 
-/// The least share that counts as an answer: with a preconditioner off by a factor of 1e16, still 1e-10 of the
-/// displacements. What is left is told and goes into the check of equilibrium.
+/// The largest share that counts as an answer: with a preconditioner off by a factor of 1e16, still 1e-10 of the
+/// displacements. What is left is returned and goes into the check of equilibrium.
 const ANSWERED: f64 = 1e-36;
 
 /// Far more steps than there are motions that the preconditioner does not know.

@@ -1,11 +1,12 @@
 //! Joints that repeat others: their rows of B depend on those of other joints, supports and ties.
 //!
 //! ```text
-//!     z_D = Σ factor·z_I        (and what supports impose that settle)
+//!     z_D = Σ factor·z_I        (and what supports that settle impose)
 //! ```
 //! The others are independent and make R. Which joints are taken for repeated ones is a choice: normals rather than
-//! tangentials, so that a repeated tangential joint follows from tangential joints alone, and no force of a normal joint
-//! depends on that of a repeated tangential one (contact, `force_form`). Normals that are held both ways come first.
+//! tangentials, so that a repeated tangential joint follows from tangential joints alone, and no force of a normal
+//! joint depends on that of a repeated tangential one (contact, `force_form`). Normals that are held both ways come
+//! first.
 
 use super::joint_rows::JointRow;
 use crate::model::pair::{Joint, JointDirection};
@@ -21,8 +22,8 @@ pub struct Repeated {
 }
 
 impl Repeated {
-    /// From the row that was left of a joint, which says Σ coefficient·z = 0; `None` where no other joint is in it: supports
-    /// and ties hold it.
+    /// From the row that is left of a joint, which says Σ coefficient·z = 0; `None` where no other joint is in it:
+    /// supports and ties hold it.
     pub(super) fn of(joint: usize, row: &JointRow, joints: usize) -> Option<Repeated> {
         let others = row.joints.iter().map(|(&j, &a)| (j as usize, -a));
         // Numbers beyond those of the joints are imposed displacements.

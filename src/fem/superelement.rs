@@ -12,8 +12,8 @@ use crate::watch::Watch;
 /// An eigenvalue of K at unit diagonal may be this far below zero by rounding.
 const INDEFINITE: f64 = 1e-9;
 
-/// Refuses a K with an eigenvalue below −1e-9 after scaling to unit diagonal: it has a Cholesky factor once that much is
-/// added to the diagonal, or it is indefinite.
+/// Refuses a K with an eigenvalue below −1e-9 after scaling to unit diagonal: it has a Cholesky factor once that much
+/// is added to the diagonal, or it is indefinite.
 ///
 /// # Errors
 /// Indefinite; too large; interrupted.

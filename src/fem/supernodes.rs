@@ -21,7 +21,7 @@ mod numeric;
 /// Each dense operation on one thread: results do not depend on the machine's number of cores.
 const PAR: Par = Par::Seq;
 
-/// Entries that are not worth a second thread to write zeros to.
+/// Fewer entries than this are not worth a second thread to fill them with zeros.
 const LARGE: usize = 1 << 20;
 
 /// The lower triangle of a symmetric matrix by columns, as terms that are summed; in any order.

@@ -9,8 +9,8 @@ use crate::model::memory::address_space_left;
 /// them to as many).
 const BYTES_PER_THREAD: f64 = 136.0 * 1024.0 * 1024.0;
 
-/// Whether the pool of threads exists; makes it at the first call. Where the system refuses or the address space is limited
-/// (`ulimit -v`), work goes on on one thread, with the same results. Small work should not ask.
+/// Whether the pool of threads exists; makes it at the first call. Where the system refuses or the address space is
+/// limited (`ulimit -v`), work goes on on one thread, with the same results. Small work should not ask.
 pub fn can_spread() -> bool {
     static POOL: OnceLock<bool> = OnceLock::new();
     *POOL.get_or_init(|| {

@@ -45,8 +45,9 @@ pub struct BarLoad {
     pub curvature: [f64; 2],
 }
 
-/// Internal forces at one place: N, V_y, M_z, V_z, M_y, T. N > 0 tension; V_y = dM_z/dx, M_z > 0 tension on the −y side;
-/// V_z = dM_y/dx, M_y > 0 tension on the −z side; T along +x on the cut that faces it. The plane has the first three.
+/// Internal forces at one place: N, V_y, M_z, V_z, M_y, T. N > 0 tension; V_y = dM_z/dx, M_z > 0 tension on the −y
+/// side; V_z = dM_y/dx, M_y > 0 tension on the −z side; T along +x on the cut that faces it. The plane has the first
+/// three.
 pub type Internal = [f64; 6];
 
 /// The two planes in which a bar bends.
@@ -146,7 +147,7 @@ impl BarLoad {
         }
     }
 
-    /// ∫ weight(s)·q(s) ds + Σ weight(s)·F: what the distributed and single forces do on the displacements `weight`
+    /// ∫ weight(s)·q(s) ds + Σ weight(s)·F: the work of the distributed and single forces on the displacements `weight`
     /// of the places. Exact for weights up to the fourth degree.
     pub fn work(&self, weight: &dyn Fn(f64) -> Motion) -> f64 {
         // Three Gauss points: exact to degree 5, of which the load takes one.
@@ -238,8 +239,8 @@ impl Piece {
         (a, (b - a) / (self.range[1] - self.range[0]))
     }
 
-    /// The internal forces, with the signs of the module, as polynomials in the distance from the start of the piece: coefficients of its powers from 0
-    /// on, without zeros at the end.
+    /// The internal forces, with the signs of the module, as polynomials in the distance from the start of the piece:
+    /// coefficients of its powers from 0 on, without zeros at the end.
     pub fn polynomials(&self) -> [Vec<f64>; 6] {
         let mut all = self.start.map(|constant| vec![constant]);
         let (qx, slope) = self.load(0);
@@ -256,8 +257,8 @@ impl Piece {
         })
     }
 
-    /// Places, distances from the start of the piece, where the internal force number `which` may be largest or smallest: the ends and where its derivative
-    /// vanishes.
+    /// Places, distances from the start of the piece, where the internal force number `which` may be largest or
+    /// smallest: the ends and where its derivative vanishes.
     pub fn candidates(&self, which: usize) -> Vec<f64> {
         let [from, to] = self.range;
         let length = to - from;
@@ -305,8 +306,8 @@ mod tests {
         assert!((m - w * length * length / (9.0 * 3.0_f64.sqrt())).abs() < 1e-14);
     }
 
-    /// A force, a couple and a part load: the jumps stand where they act, and the far end is what statics says. The same
-    /// across z, where a couple from x to z is −m_y.
+    /// A force, a couple and a part load: the jumps stand where they act, and the far end is what statics says. The
+    /// same across z, where a couple from x to z is −m_y.
     #[test]
     fn jumps_and_part_loads() {
         let load = BarLoad {

@@ -317,8 +317,8 @@ mod tests {
         }
     }
 
-    /// Under q, under P at a and under a free curvature κ₀, between ends that turn freely or not at all (Roark), with what
-    /// shear adds: q x (L − x)/2GA_s; for P the moment diagram of the simple beam over GA_s.
+    /// Under q, under P at a and under a free curvature κ₀, between ends that turn freely or not at all (Roark), with
+    /// what shear adds: q x (L − x)/2GA_s; for P the moment diagram of the simple beam over GA_s.
     #[test]
     fn elastic_curves_of_beams_between_fixed_ends() {
         let (l, ei) = (LENGTH, 14.0);

@@ -35,7 +35,7 @@ pub trait FiniteElement {
     /// As [`FiniteElement::stiffness`].
     fn doubled_stiffness(&self) -> Result<Stiffness<Doubled>, &'static str>;
 
-    /// Nodal forces in global axes that stand for what acts; kinds of load that no reader puts on it count nothing.
+    /// Nodal forces in global axes that stand for what acts; kinds of load that no reader puts on it are ignored.
     fn nodal_forces(&self, acting: &Acting) -> Vec<f64>;
 
     /// Internal forces of a bar for its displacements `u`.
@@ -43,7 +43,7 @@ pub trait FiniteElement {
         None
     }
 
-    /// Displacements in global axes of places of a bar that bends, these shares of its length from its start (ascending), for
+    /// Displacements in global axes of a bar that bends, at these shares of its length from its start (ascending), for
     /// its displacements `u`.
     fn elastic_curve(&self, _u: &[f64], _acting: &Acting, _shares: &[f64]) -> Option<Vec<[f64; 3]>> {
         None

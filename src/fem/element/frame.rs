@@ -25,7 +25,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Of a section with this area, inertia and perhaps shear area; `None` if its ends coincide.
+    /// From a section with this area, inertia and perhaps shear area; `None` if its ends coincide.
     pub fn new(
         ends: [[f64; 2]; 2],
         material: &Material,
@@ -140,7 +140,7 @@ fn rotation<T: Real>(axes: &BarAxes<T>) -> Matrix6<T> {
 mod tests {
     use super::*;
 
-    /// With EA and EI, and G A_s.
+    /// A bar from the origin to `end` with the EA and EI of `section`, and G A_s.
     fn flexible(end: [f64; 2], section: [f64; 2], shear: Option<f64>) -> Frame {
         let material = Material { youngs_modulus: 1.0, poisson_ratio: 0.0, density: 0.0, expansion: 0.0 };
         let mut frame = Frame::new([[0.0; 2], end], &material, section, None, [false; 2]).unwrap();

@@ -26,7 +26,7 @@ pub struct SpaceJacobian<T> {
 }
 
 impl<T: Real> SpaceJacobian<T> {
-    /// Of the rows of J.
+    /// From the rows of J.
     pub fn of([a, b, c]: [Triple<T>; 3]) -> SpaceJacobian<T> {
         let adjugate = [cross(b, c), cross(c, a), cross(a, b)];
         let determinant = a[0] * adjugate[0][0] + a[1] * adjugate[0][1] + a[2] * adjugate[0][2];

@@ -1,8 +1,8 @@
 //! Finite elements, one file each: stiffness, loads, recovery, in that order.
 //!
-//! A [`FiniteElement`] holds all that the rest of the house must know of an element; nothing else asks which one it is.
-//! Which displacements its rows are is told by [`slots`], and how it lies among others by
-//! [`Element`](crate::model::structure::Element).
+//! A [`FiniteElement`] holds all that the rest of the program must know of an element; nothing else asks which one it
+//! is. [`slots`] tells which displacements its rows are, and [`Element`](crate::model::structure::Element) how it lies
+//! among others.
 
 mod acting;
 pub mod bar_load;
@@ -70,10 +70,10 @@ pub fn slots(element: &Element) -> Vec<Slot> {
     slots
 }
 
-/// What a stiffness may be as a number: beyond, products of it lose digits to underflow, or overflow.
+/// Range of stiffnesses: beyond it, products of them overflow, or lose digits to underflow.
 const STIFFNESSES: std::ops::Range<f64> = 1e-200..1e200;
 
-/// What the size of an element may be: its third power is a number like any other.
+/// Range of the sizes of elements: their third power is then well within the range of f64.
 const SIZES: std::ops::Range<f64> = 1e-60..1e60;
 
 /// Stiffness of element number `index` in global axes, rows as in [`slots`]; forces per displacement.
@@ -93,7 +93,7 @@ pub fn stiffness<T: Number>(structure: &Structure, index: usize) -> Result<Stiff
     }
     let stiffness = finite_element(structure, index).and_then(|element| T::stiffness(&*element));
     let stiffness = stiffness.map_err(|what| refuse(what.to_owned()))?;
-    // A row of zeros is an idle one; nothing but zeros is a stiffness below every number.
+    // A row of zeros is an idle one; where all are zero, the stiffness is too small for f64.
     let diagonal = || (0..stiffness.nrows()).map(|i| stiffness[(i, i)].to_f64());
     let all_zero = diagonal().all(|k| k == 0.0);
     if let Some(k) = diagonal().find(|k| (*k != 0.0 || all_zero) && !STIFFNESSES.contains(k)) {

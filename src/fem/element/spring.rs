@@ -8,8 +8,8 @@ pub fn stiffness<T: Real>(spring: &Spring, i: usize, j: usize) -> T {
     T::from(spring.terms[i].factor) * T::from(spring.terms[j].factor) * T::from(spring.stiffness)
 }
 
-/// Force, or moment, with which it resists: s Σ a u for displacements per node, > 0 where it is stretched. It pulls back:
-/// on the component of a term acts −a times it.
+/// Force, or moment, with which it resists: s Σ a u for displacements per node, > 0 where it is stretched. It pulls
+/// back: on the component of a term it acts with −a times that.
 pub fn force(spring: &Spring, u: &[[f64; 6]]) -> f64 {
     let stretch: f64 = spring.terms.iter().map(|term| term.factor * u[term.node][term.component as usize]).sum();
     spring.stiffness * stretch

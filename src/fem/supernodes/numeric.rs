@@ -128,7 +128,7 @@ fn branches(shape: &Shape, owner: &[u32], costs: &[f64]) -> Vec<Range<usize>> {
 /// What has been done, for the watcher.
 struct Progress<'a> {
     total: f64,
-    /// Work and columns done, and the work last told of.
+    /// Work and columns done, and the work last reported.
     state: Mutex<(f64, usize, f64)>,
     watch: &'a dyn Watch,
 }
@@ -142,7 +142,7 @@ impl Progress<'_> {
             return Ok(());
         }
         state.2 = state.0;
-        // Under the lock: nobody tells of progress after somebody was stopped.
+        // Under the lock: no thread reports progress after another was stopped.
         check_stop(self.watch)?;
         self.watch.progress(&format!("{DOING}, {} of {all} unknowns", state.1), (state.0 / self.total).min(1.0));
         check_stop(self.watch)
@@ -272,7 +272,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// `work` on strips of so many values each, side by side if `spread` and there are threads.
+    /// `work` on strips of `size` values each, side by side if `spread` and there are threads.
     fn each_strip(
         &self,
         values: &mut [f64],
@@ -381,7 +381,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Asks the watcher after so many more multiplications.
+    /// Counts `multiplications` more and asks the watcher when a [`PIECE`] is full.
     fn look(&self, since: &mut usize, multiplications: usize) -> Result<(), MainSystemError> {
         *since += multiplications;
         if *since <= PIECE {

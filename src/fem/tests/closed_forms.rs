@@ -254,7 +254,7 @@ fn bar_on_frictional_supports() {
     }
 }
 
-/// Cantilever over a stop (validation 3): one frictionless pair, R = 3EI/L³, RF = P.
+/// Cantilever over a stop: one frictionless pair, R = 3EI/L³, RF = P.
 #[test]
 fn cantilever_on_a_stop() {
     let mut model = Model::default();
@@ -295,8 +295,8 @@ fn pair_between_two_bars() {
     near(lambda[0], 1.5);
 }
 
-/// The frame of validation 12 and the same with its third support turned by 45°: x_n of the main system and
-/// equilibrium under dislocations, checked against K.
+/// A frame clamped at one end, on three supports, and the same with the third one turned by 45°: x_n of the main system
+/// and equilibrium under dislocations, checked against K.
 #[test]
 fn frame_on_turned_supports() {
     for normal in [[0.0, 1.0], [-1.0, 1.0]] {

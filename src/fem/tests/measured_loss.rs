@@ -50,8 +50,8 @@ impl Watch for Columns {
     }
 }
 
-/// RF and displacements are in doubled precision. R of the f64 factor is kept; every entry of it is as right as every row of
-/// R z is believed to be.
+/// RF and displacements are in doubled precision. R of the f64 factor is kept; every entry of it is as right as every
+/// row of R z is believed to be.
 #[test]
 fn the_stiffness_is_kept_where_it_is_right() {
     let (structure, columns) = (structure(), Columns::default());
@@ -61,8 +61,8 @@ fn the_stiffness_is_kept_where_it_is_right() {
     assert!(worst <= BELIEVED, "{worst:e}");
 }
 
-/// A clamped bar of 400 elements: a dislocation at its tip bends all of it, so that R = 3 needs doubled precision. Less than
-/// that is noticed.
+/// A clamped bar of 400 elements: a dislocation at its tip bends all of it, so that R = 3 needs doubled precision. Less
+/// than that is noticed.
 #[test]
 fn a_stiffness_that_is_off_is_noticed() {
     let mut model = Model::default();

@@ -116,7 +116,8 @@ fn little_fill_in_a_square_plate() {
     assert!(entries < 4.0 * k.powi(3));
 }
 
-/// Two halves that are ordered on two threads, more nodes than one thread orders alone; on a pool of one thread the same.
+/// Two halves that are ordered on two threads, more nodes than one thread orders alone; on a pool of one thread the
+/// same.
 #[test]
 fn the_order_does_not_depend_on_the_number_of_threads() {
     let plate = Plate::new(120, 60);

@@ -73,8 +73,8 @@ fn random_model(seed: u64) -> Model {
     model
 }
 
-/// Every constraint as a row over the components with what it equals in both load cases: joints, supports, ties, then bodies,
-/// each node against the first.
+/// Every constraint as a row over the components with what it equals in both load cases: joints, supports, ties, then
+/// bodies, each node against the first.
 fn constraints(model: &Model, dofs: &Dofs) -> Vec<(Terms, [f64; 2])> {
     let (structure, joints) = (&model.0, model.joints());
     let at = |node: usize, component: Component| dofs.of(node, component).unwrap();
@@ -254,8 +254,8 @@ fn joints_under_a_body_repeat_one_another() {
     assert_eq!((repeated.joint, &repeated.terms[..]), (2, &[(0, -2.0), (1, 3.0)][..]));
 }
 
-/// A block of stiff elements with all its nodes in a body, on soft springs: what the elements are made of is nothing to
-/// the answer, to the last digits, and a load that turns it finds the springs' k a²/2 only.
+/// A block of stiff elements with all its nodes in a body, on soft springs: what the elements are made of does not
+/// change the answer, to the last digits, and a load that turns it finds the springs' k a²/2 only.
 #[test]
 fn elements_inside_a_body_do_not_matter() {
     let answer = |e: f64| {

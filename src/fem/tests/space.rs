@@ -90,8 +90,8 @@ fn cantilever() {
     }
 }
 
-/// Propped at the far end by a ball joint, q across in both planes: 3qL/8 there (EI alone, without shear), M = −qL²/8 at
-/// the clamp; and no rotation at the node of the joint.
+/// Propped at the far end by a ball joint, q across in both planes: 3qL/8 there (EI alone, without shear), M = −qL²/8
+/// at the clamp; and no rotation at the node of the joint.
 #[test]
 fn propped_by_a_ball_joint() {
     let mut model = space();
@@ -187,8 +187,8 @@ fn bricks(
     nodes
 }
 
-/// A beam of one layer of bricks with incompatible modes, ten times as long as high, bent by a moment M at its end: every
-/// node where u = −κxy, v = κ(x² + ν(y² − z²))/2, w = νκyz says, κ = M/EI, and σ_xx = −Eκy.
+/// A beam of one layer of bricks with incompatible modes, ten times as long as high, bent by a moment M at its end:
+/// every node where u = −κxy, v = κ(x² + ν(y² − z²))/2, w = νκyz says, κ = M/EI, and σ_xx = −Eκy.
 #[test]
 fn a_beam_of_bricks_bends_exactly() {
     let (length, height, width) = (10.0, 1.0, 0.7);
@@ -222,8 +222,8 @@ fn a_beam_of_bricks_bends_exactly() {
     }
 }
 
-/// A block of bricks on the ground, pressed by its weight, pushed and twisted: six rigid motions are the kernel of R, and
-/// the joints together hold what acts, force and moment.
+/// A block of bricks on the ground, pressed by its weight, pushed and twisted: six rigid motions are the kernel of R,
+/// and the joints together hold what acts, force and moment.
 #[test]
 fn a_block_on_the_ground() {
     let mut model = space();

@@ -42,7 +42,7 @@ const ROWS: [[(usize, f64); 6]; 2] = [
 ];
 
 impl SpaceFrame {
-    /// Of this section, its local axes by [`BarAxes::in_space`].
+    /// From this section, its local axes by [`BarAxes::in_space`].
     ///
     /// # Errors
     /// See [`AxesFault`].
@@ -119,8 +119,8 @@ impl SpaceFrame {
         k
     }
 
-    /// Forces at the ends in bar axes that stand for the load between them. Torques go to the ends that take them; one
-    /// on a bar with two ball joints is no load that a reader lets through.
+    /// Forces at the ends in bar axes that stand for the load between them. Torques go to the ends that take them; no
+    /// reader lets one through on a bar with two ball joints.
     fn local_forces(&self, load: &BarLoad) -> Vector12 {
         let length = self.axes.length;
         let mut f = Vector12::zeros();

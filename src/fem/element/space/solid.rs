@@ -1,5 +1,5 @@
-//! Isoparametric solids: tetrahedra of 4 and 10 nodes, hexahedra of 8 and 20 (`shape_functions`), those of 8 with or without
-//! incompatible modes.
+//! Isoparametric solids: tetrahedra of 4 and 10 nodes, hexahedra of 8 and 20 (`shape_functions`), those of 8 with or
+//! without incompatible modes.
 //!
 //! ```text
 //!     k_ij = Σ_g (λ g_i g_jᵀ + μ g_j g_iᵀ + μ (g_i·g_j) 1) w det J         g_i = ∂N_i/∂(x, y, z)

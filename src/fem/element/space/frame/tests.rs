@@ -145,8 +145,8 @@ fn rigid_motions_and_rank() {
     }
 }
 
-/// The rows and loads of a hinge are those of the clamped bar with the released rotations condensed out; of a ball joint
-/// with the torque as well.
+/// The rows and loads of a hinge are those of the clamped bar with the released rotations condensed out; of a ball
+/// joint with the torque as well.
 #[test]
 fn hinges_are_condensed_rotations() {
     let random = &mut ChaCha8Rng::seed_from_u64(2);
@@ -425,7 +425,8 @@ fn rows_and_doubled_precision() {
     }
 }
 
-/// Without a load between the nodes and without shear: linear along the bar, cubic across it, with slopes θ × e at the ends.
+/// Without a load between the nodes and without shear: linear along the bar, cubic across it, with slopes θ × e at the
+/// ends.
 #[test]
 fn the_elastic_curve_of_an_unloaded_bar_is_cubic() {
     let mut random = ChaCha8Rng::seed_from_u64(19);

@@ -27,8 +27,8 @@ struct Mesh {
 }
 
 impl Mesh {
-    /// Of the sizes given; every node moved at random by up to `shift` of a division, middle nodes again by a third of
-    /// it so that sides bulge.
+    /// A mesh of the given sizes; every node moved at random by up to `shift` of a division, middle nodes again by a
+    /// third of it so that sides bulge.
     fn new(
         (count, incompatible): (usize, bool),
         n: usize,
@@ -275,8 +275,8 @@ fn free_expansion_makes_no_stress() {
     }
 }
 
-/// Resultant of a body force is b V, and its moment about the origin that of the centroid of a tetrahedron; with straight
-/// sides.
+/// Resultant of a body force is b V, and its moment about the origin that of the centroid of a tetrahedron; with
+/// straight sides.
 #[test]
 fn body_forces_keep_resultant_and_moment() {
     let random = &mut ChaCha8Rng::seed_from_u64(5);
@@ -346,8 +346,8 @@ fn a_brick_bends_as_a_beam() {
     assert!(energy(false) / exact > 30.0);
 }
 
-/// Quadratic elements with straight sides hold the field of bending exactly, linear stress and nothing left over inside:
-/// tetrahedra in any shape, hexahedra as parallelepipeds.
+/// Quadratic elements with straight sides hold the field of bending exactly, linear stress and nothing left over
+/// inside: tetrahedra in any shape, hexahedra as parallelepipeds.
 #[test]
 fn quadratic_fields_are_exact() {
     let random = &mut ChaCha8Rng::seed_from_u64(6);
