@@ -1,4 +1,4 @@
-//! Numbers of a scenario's text written anew: everything else keeps its place and its characters.
+//! Rewrites numbers in the text of a scenario: everything else keeps its place and its characters.
 
 use jsonc_parser::cst::{CstInputValue, CstObject};
 
@@ -26,7 +26,7 @@ impl Amended {
 /// Writes a number of a parameter that stands in the text of a scenario.
 ///
 /// # Errors
-/// The path that is not there.
+/// A path that does not exist.
 pub fn set_parameter(scenario: &CstObject, name: &str, what: Amended, value: f64) -> Result<(), String> {
     let parameter = scenario
         .object_value("parameters")

@@ -3,7 +3,8 @@
 use crate::doubled::Real;
 
 /// A bar counts as upright, and a given orientation as along the bar, where the sine of the angle between them is below
-/// this (as in the CSI Analysis Reference Manual, "Local Coordinate System" of frames): local axes are known to ε over it.
+/// this (as in the CSI Analysis Reference Manual, "Local Coordinate System" of frames): local axes are known to ε over
+/// it.
 const UPRIGHT: f64 = 1e-3;
 
 /// Length of a bar and unit vectors along its axes, in global components.
@@ -42,15 +43,15 @@ impl AxesFault {
 }
 
 impl<T: Real> BarAxes<T> {
-    /// Of a bar in the plane; `None` if its ends coincide.
+    /// The axes of a bar in the plane; `None` if its ends coincide.
     pub fn in_plane(ends: [[f64; 2]; 2]) -> Option<BarAxes<T>> {
         let (length, [cos, sin, _]) = direction(ends.map(|[x, y]| [x, y, 0.0]))?;
         let (o, one) = (T::zero(), T::one());
         Some(BarAxes { length, x: [cos, sin, o], y: [-sin, cos, o], z: [o, o, one] })
     }
 
-    /// Of a bar in space. `orientation` is any vector in its local x–y plane, on the side of +y; without one it is
-    /// global z, for [upright](is_upright) bars global x.
+    /// The axes of a bar in space. `orientation` is any vector in its local x–y plane, on the side of +y; without one
+    /// it is global z, for [upright](is_upright) bars global x.
     ///
     /// # Errors
     /// See [`AxesFault`].
@@ -130,8 +131,8 @@ mod tests {
         assert!((axes([0.0, 1.01e-3, 1.0], None).unwrap().y[1] + 1.0).abs() < 1e-6);
     }
 
-    /// Any bar, however long, with an orientation at any angle down to the least: orthonormal to rounding, right-handed,
-    /// y on the side of the orientation and in its plane; doubled precision says the same.
+    /// Any bar, however long, with an orientation at any angle down to the least: orthonormal to rounding,
+    /// right-handed, y on the side of the orientation and in its plane; doubled precision says the same.
     #[test]
     fn axes_are_orthonormal() {
         let ends = [[0.3, -0.7, 0.2], [1e-50, 2e-50, -3e-50], [4e50, 1e50, 1e48]];

@@ -1,4 +1,4 @@
-//! The plane or space: what a structure has more of in one than in the other.
+//! The plane or space, and what a structure has in each.
 
 use super::node::Component;
 use super::vector::{cross, dot, unit};
@@ -92,8 +92,8 @@ impl Dimension {
     }
 
     /// Unit tangents of the plane of contact with the unit normal `n`. In the plane its t: n turned by −90°
-    /// (clockwise), n = (0, 1) gives t = (1, 0). In space t1, the projection of the global x on the plane of contact (of
-    /// y where n ∥ x), and t2 = n × t1.
+    /// (clockwise), n = (0, 1) gives t = (1, 0). In space t1, the projection of the global x on the plane of contact
+    /// (of y where n ∥ x), and t2 = n × t1.
     pub fn tangents(self, n: [f64; 3]) -> Vec<[f64; 3]> {
         match self {
             Dimension::Plane => vec![[n[1], -n[0], 0.0]],

@@ -115,7 +115,7 @@ pub fn crossings(a: f64, c1: f64, c2: f64) -> Vec<f64> {
     places
 }
 
-/// Those of the parabola with these values at t = 0, 1/2 and 1.
+/// The crossings of the parabola with these values at t = 0, 1/2 and 1.
 pub fn crossings_through([a, m, b]: [f64; 3]) -> Vec<f64> {
     crossings(a, 4.0 * m - 3.0 * a - b, 2.0 * a - 4.0 * m + 2.0 * b)
 }
@@ -143,8 +143,8 @@ impl Edge {
         side.outward([b[0] - a[0], b[1] - a[1]])
     }
 
-    /// Unit normals at its nodes, pointing out of the body: those of the chord where the edge is straight, else the mean
-    /// of the sides that meet there.
+    /// Unit normals at its nodes, pointing out of the body: those of the chord where the edge is straight, else the
+    /// mean of the sides that meet there.
     pub fn outward_normals(&self, nodes: &[Node]) -> Vec<[f64; 3]> {
         self.outward_in_plane(nodes).into_iter().map(flat).collect()
     }
@@ -241,7 +241,7 @@ pub enum ChainError {
 }
 
 impl Sides {
-    /// Of all elements that are areas.
+    /// The sides of all elements that are areas.
     pub fn of(elements: &[Element]) -> Sides {
         let mut sides = Sides::default();
         for (index, element) in elements.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Finite elements as data: their nodes, what they are made of, and how they lie in the structure.
 //!
-//! How they carry force is told by [`crate::fem`], in one file for each kind.
+//! [`crate::fem`] says how they carry force, in one file for each kind.
 
 use super::node::Component;
 use super::shape::{Shape, side_corners};
@@ -77,7 +77,7 @@ pub enum ElementKind {
     SpaceTruss {
         /// Cross-section area.
         area: f64,
-        /// As of a frame; for the loads across it.
+        /// As for a frame; used for loads across the bar.
         orientation: Option<[f64; 3]>,
     },
     /// Tetrahedron of 4 or 10 nodes, hexahedron of 8 or 20, in the order of
@@ -150,7 +150,7 @@ impl Element {
         matches!(self.kind, ElementKind::Frame { .. } | ElementKind::SpaceFrame { .. })
     }
 
-    /// What its length (bars), area (membranes) or volume (solids) is multiplied with to give its volume.
+    /// What its length (bars), area (membranes) or volume (solids) is multiplied by to give its volume.
     pub fn area(&self) -> f64 {
         match &self.kind {
             ElementKind::Frame { area, .. } | ElementKind::Truss { area } | ElementKind::SpaceTruss { area, .. } => {
@@ -162,7 +162,7 @@ impl Element {
         }
     }
 
-    /// Area and second moments of area of the cross-section of one that bends: one in the plane, two in space.
+    /// Area and second moments of area of the cross-section of one that bends: one in the plane, I_y and I_z in space.
     pub fn section(&self) -> Option<(f64, Vec<f64>)> {
         match self.kind {
             ElementKind::Frame { area, inertia, .. } => Some((area, vec![inertia])),
@@ -196,8 +196,8 @@ impl Element {
         self.sides().zip(middles).flat_map(|([a, b], &middle)| [[a, middle], [middle, b]]).collect()
     }
 
-    /// Over what its neighbours move with it: sides of bars and areas, faces of solids, as corner nodes in increasing
-    /// order, `usize::MAX` behind the last.
+    /// The borders over which neighbours move with it: sides of bars and areas, faces of solids, as corner nodes in
+    /// increasing order, `usize::MAX` behind the last.
     pub fn borders(&self) -> impl Iterator<Item = [usize; 4]> {
         let border = |nodes: &[usize]| {
             let mut border = [usize::MAX; 4];
@@ -215,7 +215,8 @@ impl Element {
         sides.chain(faces)
     }
 
-    /// The nodes of an area as they lie round it, middle nodes between their corners; the two of a bar, none of a solid.
+    /// The nodes of an area as they lie round it, middle nodes between their corners; the two of a bar, none of a
+    /// solid.
     pub fn ring(&self) -> impl Iterator<Item = usize> {
         let shape = self.shape();
         let corners = if shape.is_solid() { 0 } else { shape.corners() };

@@ -33,13 +33,14 @@ pub struct FaceSpot {
     pub position: [f64; 3],
     /// Unit normal out of the body.
     pub outward: [f64; 3],
-    /// How far it lies below the level, where there is one: as well known as the heights of the nodes are from it.
+    /// Depth below the level, where there is one: as accurate as the differences between the level and the heights of
+    /// the nodes.
     pub depth: f64,
     /// The element whose side it is on.
     pub element: usize,
 }
 
-/// So often is the strip of a side halved. Kinks take some forty halvings each; more are wasted on rounding where hardly
+/// Most halvings of the strips of a side. Kinks take some forty halvings each; more are wasted on rounding where hardly
 /// anything of a side lies below the level.
 const HALVINGS: u32 = 1000;
 
@@ -108,7 +109,7 @@ impl Patch<'_> {
         self.places.iter().zip(self.shape.values(at)).map(|(place, n)| n * (level - place[2])).sum()
     }
 
-    /// Between which (ξ, η) lies for a given ξ: (0, 1 − ξ) on triangles, (−1, 1) on quadrilaterals.
+    /// The range of η for a given ξ: (0, 1 − ξ) on triangles, (−1, 1) on quadrilaterals.
     fn across(&self, xi: f64) -> [f64; 2] {
         if self.shape.is_triangle() { [0.0, 1.0 - xi] } else { [-1.0, 1.0] }
     }
@@ -148,8 +149,8 @@ impl Patch<'_> {
         lines.iter().fold(Sum::default(), Sum::plus)
     }
 
-    /// The same, its strip halved until nothing changes but by the rounding of `terms`: where the line of the level is a
-    /// conic it makes kinks inside.
+    /// The same, its strip halved until nothing changes but by the rounding of `terms`: where the line of the level is
+    /// a conic it makes kinks inside.
     fn settle(&self, [from, to]: [f64; 2], whole: Sum, terms: f64) -> Sum {
         let middle = 0.5 * (from + to);
         let halves = [[from, middle], [middle, to]];
@@ -195,7 +196,7 @@ impl Patch<'_> {
 }
 
 impl Face {
-    /// Of these sides; its nodes in the order in which they come.
+    /// The face of these sides; its nodes in the order in which they come.
     pub fn of(sides: Vec<FaceSide>) -> Face {
         let mut seen = HashSet::new();
         let nodes = sides.iter().flat_map(|side| &side.nodes).copied().filter(|node| seen.insert(*node)).collect();
@@ -203,8 +204,8 @@ impl Face {
     }
 
     /// Nodal forces ∫ N q dA of the force `q` per area; where a `level` is given, q may have a kink at that height z.
-    /// Exact, cut or not, where q times the area is a polynomial between: pressures on any side, tractions on plane ones
-    /// that are triangles with straight sides or parallelograms.
+    /// Exact, cut or not, where q times the area is a polynomial between: pressures on any side, tractions on plane
+    /// ones that are triangles with straight sides or parallelograms.
     pub fn consistent_forces(
         &self,
         nodes: &[Node],
@@ -247,8 +248,8 @@ impl Face {
         self.nodes.iter().all(is_near).then_some(normal)
     }
 
-    /// Unit normals at its nodes, pointing out of the body: that of the whole where the face is plane, else of the sum of
-    /// the vector areas of the sides that meet there. `None` where they cancel.
+    /// Unit normals at its nodes, pointing out of the body: that of the whole where the face is plane, else of the sum
+    /// of the vector areas of the sides that meet there. `None` where they cancel.
     pub fn outward_normals(&self, nodes: &[Node]) -> Vec<Option<[f64; 3]>> {
         if let Some(normal) = self.plane_normal(nodes) {
             return vec![Some(normal); self.nodes.len()];

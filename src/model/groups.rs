@@ -1,4 +1,4 @@
-//! What hangs together: a partition of 0 … n − 1 that grows coarser as members are joined (union–find).
+//! What is connected: a partition of 0 … n − 1 that grows coarser as members are joined (union–find).
 
 /// A partition; at first everyone is alone.
 #[derive(Clone, Debug)]
@@ -8,7 +8,7 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// Of `count` members, each alone.
+    /// A partition of `count` members, each alone.
     pub fn new(count: usize) -> Groups {
         Groups { parent: (0..count as u32).collect() }
     }

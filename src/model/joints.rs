@@ -1,8 +1,8 @@
 //! Which contact pairs form one joint: a line along which a quantity can be drawn.
 //!
 //! Two pairs are neighbours in a joint where the way from one to the other runs along both their tangents and through
-//! the material of one of the sides. The two pads of a portal are connected through its columns only, the two sides of a
-//! slot lie across from each other, at a corner the tangents differ: these are joints of their own.
+//! the material of one of the sides. The two pads of a portal are connected through its columns only, the two sides of
+//! a slot lie across from each other, at a corner the tangents differ: these are joints of their own.
 
 use std::collections::{BinaryHeap, HashMap};
 
@@ -122,7 +122,7 @@ impl Material {
             return true;
         }
         let straight = |node: usize| distance(self.positions[node], self.positions[to]);
-        // the shortest first, told by the way made and the straight rest of it; lengths as ordered integers
+        // the shortest first, measured by the way made and the straight rest of it; lengths as ordered integers
         let mut open = BinaryHeap::from([(std::cmp::Reverse(straight(from).to_bits()), from)]);
         let mut best = HashMap::from([(from, 0.0)]);
         while let Some((_, node)) = open.pop() {

@@ -84,7 +84,7 @@ pub fn at_values(scenario: &Scenario, values: &ParameterValues) -> Result<Scenar
     decode::scenario(&scenario.name, &scenario.text, scenario.path.clone(), under)
 }
 
-/// The scenario with the rates of its loads along a parameter in the place of their values: what the loads of every
+/// The scenario with the rates of its loads along a parameter in place of their values: what the loads of every
 /// case grow by per unit of it, its factor aside.
 ///
 /// # Errors

@@ -142,7 +142,7 @@ fn syntax_error(text: &str) -> SyntaxError {
     }
 }
 
-/// The text with blanks in the place of comments and trailing commas, so that every byte keeps its place.
+/// The text with blanks in place of comments and trailing commas, so that every byte keeps its place.
 fn strict(text: &str) -> std::borrow::Cow<'_, str> {
     let bytes = text.as_bytes();
     let mut blank: Vec<std::ops::Range<usize>> = Vec::new();

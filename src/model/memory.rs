@@ -3,8 +3,8 @@
 /// Bytes per node: mesh, assembled matrix and its sparse factor. Measured: 467 MB for 160 400 nodes.
 const BYTES_PER_NODE: f64 = 3000.0;
 
-/// Bytes per byte of a scenario file: its text, the tree of its values, and what is read from them. Measured: 0.9 GB for
-/// the 15 MB of a million nodes.
+/// Bytes per byte of a scenario file: its text, the tree of its values, and what is read from them. Measured: 0.9 GB
+/// for the 15 MB of a million nodes.
 const BYTES_PER_BYTE: f64 = 60.0;
 
 /// Bytes per byte of a mesh file. Measured: 226 MB for the 15 MB of 251 000 nodes.
@@ -20,28 +20,28 @@ const ASSUMED_MEMORY: f64 = 64.0 * GIB;
 const MIB: f64 = 1024.0 * 1024.0;
 const GIB: f64 = 1024.0 * MIB;
 
-/// Bytes needed for a model of so many nodes.
+/// Bytes needed for a model with this many nodes.
 pub fn for_nodes(nodes: f64) -> f64 {
     BYTES_PER_NODE * nodes
 }
 
-/// Bytes needed to read a scenario of so many bytes.
+/// Bytes needed to read a scenario of this many bytes.
 pub fn for_text(bytes: usize) -> f64 {
     BYTES_PER_BYTE * bytes as f64
 }
 
-/// Bytes needed to read a mesh file of so many bytes: the file and what is read from it, before it becomes a model.
+/// Bytes needed to read a mesh file of this many bytes: the file and what is read from it, before it becomes a model.
 pub fn for_mesh(bytes: usize) -> f64 {
     BYTES_PER_MESH_BYTE * bytes as f64
 }
 
-/// Bytes needed for so many contact joints: R, its copy without the kernel, and the dictionary of the pivots with
-/// the steps that wait, all dense.
+/// Bytes needed for this many contact joints: R, its copy without the kernel, and the dictionary of the pivots with the
+/// steps that wait, all dense.
 pub fn for_joints(joints: f64) -> f64 {
     6.0 * 8.0 * joints * joints
 }
 
-/// Bytes needed for so many entries of a sparse matrix: read, checked and assembled.
+/// Bytes needed for this many entries of a sparse matrix: read, checked and assembled.
 pub fn for_entries(entries: f64) -> f64 {
     120.0 * entries
 }

@@ -5,14 +5,14 @@
 //!     mutual displacement               z_j = Σ_k B_jk u_k − Σ_l M_jl u_l, divided by ∫ N_j ds
 //!     B_jk = ∫ Ψ_j N_k ds,  M_jl = ∫ Ψ_j N_l ds       k: nodes of the non-mortar edge, l: nodes of the other one
 //! ```
-//! With the dual functions of a side, Ψ = D M⁻¹ N (D = diag ∫ N_k ds, M = ∫ N_k N_l ds), B is diagonal and the x·z are the
-//! work. They sum to 1, so a uniform traction is carried over exactly. Points of the two edges belong together along the
-//! interpolated mean normals of the non-mortar edge; sides are cut where a corner of the other edge is met, so that every
-//! integral is one of a polynomial where both edges are straight.
+//! With the dual functions of a side, Ψ = D M⁻¹ N (D = diag ∫ N_k ds, M = ∫ N_k N_l ds), B is diagonal and the x·z are
+//! the work. They sum to 1, so a uniform traction is carried over exactly. Points of the two edges belong together
+//! along the interpolated mean normals of the non-mortar edge; sides are cut where a corner of the other edge is met,
+//! so that every integral is one of a polynomial where both edges are straight.
 //!
 //! * **Ends.** Where the other edge ends inside a side, the functions of that side are made of those of its nodes that
-//!   face the other edge, as the dual of the polynomial through them: with one such node Ψ = 1. Uniform traction is still
-//!   exact, and no force stands outside the common length, as it would if the node beyond had a pair of its own.
+//!   face the other edge, as the dual of the polynomial through them: with one such node Ψ = 1. Uniform traction is
+//!   still exact, and no force stands outside the common length, as it would if the node beyond had a pair of its own.
 //! * **Corners.** Where both edges have a node at one bend, it is a pair of two nodes, and the functions next to it are
 //!   made of the other nodes of their sides: else the traction of one leg would act on the other one.
 
@@ -36,13 +36,13 @@ const GAUSS: [(f64, f64); 5] = [
 /// A side of the other edge faces one of this edge if the cosine between their normals is below minus this.
 const FACING: f64 = 0.1;
 
-/// Shares of a side that count as nothing: coordinates of meshes agree that well (see `decode::contacts`).
+/// Shares of a side that count as nothing: coordinates of meshes agree that well (see `decode::sides`).
 const NEAR: f64 = 1e-6;
 
 /// Weights that are sums of a few products of numbers up to 1 and vanish by themselves.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A bend of an edge, in radians; below it is one of rounding.
+/// Least angle between two sides, in radians, that is a bend of the edge and not rounding.
 const BEND: f64 = 1e-6;
 
 /// Why two edges have no mortar contact.

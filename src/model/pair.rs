@@ -85,7 +85,7 @@ impl Law {
         self.kind().has_tangential_joint()
     }
 
-    /// f, where the friction bound hangs on x_n.
+    /// f, where the friction bound depends on x_n.
     pub fn friction(&self) -> Option<&Number> {
         match self {
             Law::Coulomb { friction, .. } => Some(friction),
@@ -130,7 +130,8 @@ pub struct Pair {
     pub weights: Weights,
     /// Unit normal n, from `against` to `node`.
     pub normal: [f64; 3],
-    /// Unit tangents: t in the plane, t1 and t2 in space (see [`Dimension::tangents`](super::dimension::Dimension::tangents)).
+    /// Unit tangents: t in the plane, t1 and t2 in space (see
+    /// [`Dimension::tangents`](super::dimension::Dimension::tangents)).
     pub tangents: Vec<[f64; 3]>,
     /// Whether friction acts against the firm ground although the first side is a node: the ground of a foundation
     /// yields along n only, z_τ = t·u_node.

@@ -114,7 +114,8 @@ impl ParameterValues {
         values
     }
 
-    /// Sets a parameter; every formula follows. What it was before, if it was known. A formula keeps its own value.
+    /// Sets a parameter; every formula follows. Returns the value before, if there was one. A formula keeps its own
+    /// value.
     pub fn insert(&mut self, name: String, value: f64) -> Option<f64> {
         let before = self.values.insert(name, value);
         self.compute();

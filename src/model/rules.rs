@@ -63,7 +63,7 @@ const MOST_FACETS: u16 = 256;
 /// Numbers of facets that a polygon can have.
 pub const FACETS_EXPECTED: &str = "an even number from 4 to 256";
 
-/// A number of facets, if a polygon can have so many: with its mirror each direction is there twice.
+/// A number of facets, if a polygon can have that many: an even number, for every direction has its opposite.
 pub fn facets(count: usize) -> Option<u16> {
     u16::try_from(count).ok().filter(|facets| (4..=MOST_FACETS).contains(facets) && facets.is_multiple_of(2))
 }
@@ -96,7 +96,7 @@ impl Default for Rules {
 }
 
 impl Rules {
-    /// The words of a number of facets.
+    /// Sets the number of facets from its word.
     ///
     /// # Errors
     /// Anything else than an even number from 4 to [`MOST_FACETS`].
@@ -109,7 +109,7 @@ impl Rules {
         Ok(())
     }
 
-    /// The words on and off: whether the answer is taken to Coulomb's cone.
+    /// Sets from the word on or off whether the answer is taken to Coulomb's cone.
     ///
     /// # Errors
     /// Any other word.

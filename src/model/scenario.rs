@@ -30,8 +30,8 @@ pub struct GivenContactSystem {
     pub tangents: usize,
     /// Coordinate of each pair along the contact zone, for plots.
     pub positions: Option<Vec<f64>>,
-    /// What relates forces and displacements, 2m × 2m row by row: all normals, then all tangentials; in space 3m × 3m, the
-    /// two tangentials of a pair one after the other. Symmetric up to 1e-8 after scaling to unit diagonal.
+    /// What relates forces and displacements, 2m × 2m row by row: all normals, then all tangentials; in space 3m × 3m,
+    /// the two tangentials of a pair one after the other. Symmetric up to 1e-8 after scaling to unit diagonal.
     pub matrix: GivenMatrix,
     /// Load cases: name, factor, CLV (an entry per row).
     pub loads: Vec<GivenLoad>,
@@ -66,7 +66,7 @@ pub struct GivenLoad {
     pub name: String,
     /// Factor, may be a parameter.
     pub factor: Number,
-    /// Contact load vector (with a compliance: displacements), 2m.
+    /// Contact load vector (with a compliance: displacements), an entry per row of the matrix.
     pub vector: Vec<f64>,
 }
 
@@ -96,7 +96,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// Where its structure lies, or its pairs slip: those of space in a plane of directions.
+    /// Whether its structure lies, or its pairs slip, as in the plane or as in space.
     pub fn dimension(&self) -> Dimension {
         match self {
             Source::Structure(structure) => structure.dimension,
@@ -117,20 +117,20 @@ pub struct Stage {
 /// a plate, the pairs of an edge) share its path. Empty for the other sources, except `pairs`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Places {
-    /// Of the nodes, one entry after the other.
+    /// Places of the nodes, one entry after the other.
     pub nodes: Vec<NodePlace>,
-    /// Of each element: its bar, plate or quad.
+    /// Place of each element: its bar, plate or quad.
     pub elements: Vec<Arc<str>>,
-    /// Of each contact pair.
+    /// Place of each contact pair.
     pub pairs: Vec<Arc<str>>,
 }
 
 /// Where nodes that follow one another come from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodePlace {
-    /// Index of the first node that is not of here.
+    /// Index of the first node after these.
     pub end: usize,
-    /// JSON path of the entry; of the list where each node has its own, under its id.
+    /// JSON path of the entry; where each node has an entry of its own, under its id, that of their list.
     pub path: Arc<str>,
     pub is_list: bool,
 }

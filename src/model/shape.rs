@@ -1,14 +1,14 @@
 //! Shapes of elements: how many nodes, whether they enclose an area, how good they are.
 //!
-//! A quadratic element is its straight one and what its sides bulge: with d_k = m_k − (c_k + c_k+1)/2
+//! A quadratic element is the one with straight sides and the bulges of its sides: with d_k = m_k − (c_k + c_k+1)/2
 //!
 //! ```text
 //!     x = Σ N_k c_k + Σ 4 L_i L_j d_k                        triangles
 //!     x = Σ N_k c_k + 4 s(1 − s)(1 − t) d_1 + …              quadrilaterals (serendipity)
 //! ```
 
-/// Shape of an element. The nodes of a line or an area go round, corners first, then the middles of the sides 1-2, 2-3 …;
-/// those of a solid are in the order of [`shape_functions`](super::shape_functions).
+/// Shape of an element. The nodes of a line or an area go round, corners first, then the middles of the sides 1-2, 2-3
+/// …; those of a solid are in the order of [`shape_functions`](super::shape_functions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// Straight line.
@@ -219,7 +219,8 @@ impl Shape {
             }
         }
         let det = cross(along_s, along_t);
-        // Every coordinate is known to half a unit of its last digit; eight nodes with factors up to 4 meet in a tangent.
+        // Every coordinate is known to half a unit of its last digit; eight nodes with factors up to 4 meet in a
+        // tangent.
         let coordinate = nodes.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
         sign(det, 16.0 * f64::EPSILON * coordinate * (norm(along_s) + norm(along_t)))
     }
@@ -231,8 +232,8 @@ impl Shape {
         corners.chain(nodes[n..].iter().rev().copied()).collect()
     }
 
-    /// Quality from 0 to 1: the least sine of a corner's angle, of triangles by that of the equilateral one; of
-    /// quadratic elements between the tangents of the sides.
+    /// Quality from 0 to 1: the least sine of a corner's angle, for triangles divided by that of the equilateral one;
+    /// for quadratic elements between the tangents of the sides.
     pub fn quality(self, nodes: &[Point]) -> f64 {
         let n = self.corners();
         // Tangents of side k at its start and at its end.
@@ -296,7 +297,7 @@ pub(super) fn is_negative(signs: impl Iterator<Item = i8>) -> Result<bool, Shape
     }
 }
 
-/// Two nodes at one place, if there are.
+/// Refuses two nodes at one place.
 pub(super) fn coincident<P: PartialEq>(nodes: &[P]) -> Result<(), ShapeFault> {
     for (i, a) in nodes.iter().enumerate() {
         if let Some(j) = nodes[..i].iter().position(|b| b == a) {

@@ -218,7 +218,7 @@ impl<'t> Words<'t> {
         }
         let entries = if triplets { self.triplets(n, count)? } else { self.compressed(n, count)? };
         for (i, j, value) in entries {
-            // Of the rows of a matrix CSparse makes the columns.
+            // CSparse prints the rows of such a matrix as columns.
             let (i, j) = if origin == 3 && !triplets { (j, i) } else { (i, j) };
             matrix[i][j] += value;
         }

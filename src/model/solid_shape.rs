@@ -80,8 +80,8 @@ impl Shape {
         points.into_iter().map(|(at, weight)| weight * determinant(jacobian(functions, nodes, at))).sum()
     }
 
-    /// Quality of a solid from 0 to 1: the least volume of the unit vectors along the sides at a corner, of tetrahedra
-    /// by that of the regular one (the scaled Jacobian); of quadratic elements along the tangents.
+    /// Quality of a solid from 0 to 1: the least volume of the unit vectors along the sides at a corner, for tetrahedra
+    /// divided by that of the regular one (the scaled Jacobian); for quadratic elements along the tangents.
     pub fn quality_of_solid(self, nodes: &[[f64; 3]]) -> f64 {
         let functions = SolidShape::of(self.nodes());
         let corners = &functions.nodes()[..self.corners()];
@@ -96,7 +96,8 @@ impl Shape {
     }
 }
 
-/// The tangents of the three sides at a corner of a tetrahedron, from ∂x/∂ξ, ∂x/∂η, ∂x/∂ζ there, in a right-handed order.
+/// The tangents of the three sides at a corner of a tetrahedron, from ∂x/∂ξ, ∂x/∂η, ∂x/∂ζ there, in a right-handed
+/// order.
 fn sides_at([a, b, c]: [[f64; 3]; 3], corner: usize) -> [[f64; 3]; 3] {
     let minus = |a: [f64; 3]| a.map(|a| -a);
     match corner {
@@ -235,8 +236,8 @@ mod tests {
         assert_eq!(Shape::Hexahedron8.is_inside_out(&nodes), Err(ShapeFault::Folded));
     }
 
-    /// Of the parent elements and of the regular tetrahedron. A middle node that is pushed out along y adds the integral
-    /// of its function over the face it leaves: x and z do not change, and the function is 0 on the others.
+    /// Of the parent elements and of the regular tetrahedron. A middle node that is pushed out along y adds the
+    /// integral of its function over the face it leaves: x and z do not change, and the function is 0 on the others.
     #[test]
     fn volumes_and_qualities() {
         for (shape, volume) in ALL.into_iter().zip([1.0 / 6.0, 1.0 / 6.0, 8.0, 8.0]) {

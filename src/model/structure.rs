@@ -24,7 +24,7 @@ pub struct Bar {
     pub elements: std::ops::Range<usize>,
 }
 
-/// The elements of a mesh file that are areas.
+/// The elements of a mesh file that are areas or solids.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshElements {
     /// Name in the file.
@@ -33,13 +33,13 @@ pub struct MeshElements {
     pub elements: std::ops::Range<usize>,
     /// Their numbers in the mesh file.
     pub tags: Vec<u64>,
-    /// The parts that hang together.
+    /// Its connected parts.
     pub bodies: Vec<Body>,
     /// The sides of its elements, each once, with whether two elements share it.
     pub sides: Vec<(EdgeSide, bool)>,
 }
 
-/// Elements that hang together.
+/// Connected elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// `m`, `m.GROUP` or `m#TAG`.
@@ -84,11 +84,11 @@ pub struct Structure {
     pub supports: Vec<Support>,
     /// Ties.
     pub ties: Vec<Tie>,
-    /// K and F of another program in the place of elements.
+    /// K and F of another program in place of elements.
     pub superelement: Option<Superelement>,
     /// Rigid bodies; no node is in two of them.
     pub rigid: Vec<RigidBody>,
-    /// Springs to the ground.
+    /// Springs, to the ground or between two nodes.
     pub springs: Vec<Spring>,
     /// Nodes that stand for the yielding ground of tensionless foundations, in increasing order: what their springs
     /// carry is contact with the ground and stands under the pairs.
@@ -155,7 +155,7 @@ impl Structure {
         (i < columns && plate.elements.contains(&index)).then_some(index)
     }
 
-    /// The name of a membrane element as [`Structure::element_named`] takes it.
+    /// The name of an area or a solid as [`Structure::element_named`] takes it.
     pub fn element_name(&self, element: usize) -> Option<String> {
         if let Ok(at) = self.named_elements.binary_search_by_key(&element, |(_, index)| *index) {
             return Some(self.named_elements[at].0.clone());

@@ -10,11 +10,11 @@ use super::vector::way;
 /// A row of K u below this share of its terms is zero by the digits of K.
 const DIGITS: f64 = 64.0 * f64::EPSILON;
 
-/// Below this share it is what a condensation (K_bb − K_bi K_ii⁻¹ K_ib) leaves of zero: ε times the condition of K_ii, which
-/// is up to some 1e5 in a body of usual proportions. What is taken as free so is told.
+/// Below this share it is what a condensation (K_bb − K_bi K_ii⁻¹ K_ib) leaves of zero: ε times the condition of K_ii,
+/// which is up to some 1e5 in a body of usual proportions. What is taken as free on this ground is reported.
 const CONDENSED: f64 = 1e-10;
 
-/// Singular values below this are looked at.
+/// Singular values below this are examined.
 const NEARLY: f64 = 1e-9;
 
 /// Parts with more rows are not corrected: the corrected K is dense.
@@ -29,7 +29,7 @@ pub struct Superelement {
     pub dofs: Vec<(usize, Component)>,
     /// The lower triangle of K: (row, column, value), row ≥ column, each place once.
     pub entries: Vec<(usize, usize, f64)>,
-    /// What hangs together.
+    /// Its connected parts.
     pub parts: Vec<Part>,
 }
 
@@ -50,8 +50,8 @@ pub struct Part {
 }
 
 impl Superelement {
-    /// Finds the parts and their free motions; K is put right where it resists a rigid motion by rounding alone. Also what
-    /// is to be said of that.
+    /// Finds the parts and their free motions; K is put right where it resists a rigid motion by rounding alone. Also
+    /// returns what has to be said of that.
     pub fn new(
         dimension: Dimension,
         nodes: &[Node],

@@ -6,8 +6,8 @@ use super::structure::Structure;
 use super::vector::{length, way};
 
 /// For each pair of the structure the integral of its node's shape function along the edge or bar, or over the face, it
-/// lies on: half of the sides beside it, on quadratic sides 1/6, 4/6, 1/6 of their length. `None` for a pair of single nodes, and on an edge
-/// whose last node may be joined to its first.
+/// lies on: half of the sides beside it, on quadratic sides 1/6, 4/6, 1/6 of their length. `None` for a pair of single
+/// nodes, and on an edge whose last node may be joined to its first.
 pub fn tributary_lengths(structure: &Structure) -> Vec<Option<f64>> {
     let middles: HashSet<usize> = structure
         .elements

@@ -25,7 +25,7 @@ pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     length(way(a, b))
 }
 
-/// The unit vector along `a`; `None` of the zero vector.
+/// The unit vector along `a`; `None` for the zero vector.
 pub fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
     let length = length(a);
     (length > 0.0).then(|| a.map(|a| a / length))

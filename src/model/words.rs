@@ -34,7 +34,7 @@ pub fn did_you_mean_typed<'n>(word: &str, known: impl IntoIterator<Item = &'n st
 /// "no pair `jiont[0]` (did you mean `joint[0]`?): the pairs are c1, c2".
 pub fn no_such<'n>(what: &str, id: &str, known: impl IntoIterator<Item = &'n str>) -> String {
     let names: Vec<&str> = known.into_iter().collect();
-    // Of two letters any other two are near.
+    // Any two names of two letters are near each other.
     let near = if id.chars().count() > 2 { did_you_mean_typed(id, names.iter().copied()) } else { String::new() };
     match names.as_slice() {
         [] => format!("no {what} `{id}`: there is none"),

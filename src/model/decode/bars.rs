@@ -16,7 +16,7 @@ pub struct BarOutline<'d> {
     section: &'d str,
     /// The nodes of the file along it: two, or those of its `polyline`.
     nodes: Vec<Cursor<'d>>,
-    /// Of each segment between them.
+    /// Elements of each segment between them.
     divisions: usize,
     material: usize,
     kind: ElementKind,

@@ -86,11 +86,11 @@ pub struct Builder<'d> {
     /// Names whose definition is wrong: reported there, not again where they are used.
     pub broken: HashSet<&'d str>,
     pub ends_of_broken_bars: Vec<Cursor<'d>>,
-    /// Whether `nodes` could not be read at all: unknown nodes are then no news.
+    /// Whether `nodes` could not be read at all: unknown nodes are then not reported.
     pub nodes_are_unknown: bool,
     /// Imposed displacements of supports, until their load cases are known.
     pub settlements: Vec<Settlement<'d>>,
-    /// The rigid body of each of their nodes.
+    /// The rigid body of each node that is in one.
     pub body_of: HashMap<usize, usize>,
     /// Whether each node has a rotation; empty until the elements are complete.
     pub has_rotation: Vec<bool>,

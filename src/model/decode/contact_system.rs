@@ -23,7 +23,7 @@ const SYMMETRY: f64 = 1e-8;
 /// R z of a kernel vector may be this much of Σ √R_ii √R_kk |z_k|.
 const KERNEL: f64 = 1e-8;
 
-/// Rounding of an entry of R that was computed beside the largest one.
+/// Rounding of an entry of an R that was computed in f64, as a share of the largest one.
 const STORED: f64 = 256.0 * f64::EPSILON;
 
 /// Reads a contact system; `path` is the scenario file, for the file of the matrix.
@@ -78,7 +78,7 @@ pub fn read(cursor: Cursor<'_>, path: Option<&Path>) -> Option<GivenContactSyste
     Some(GivenContactSystem { pairs, tangents, positions, matrix: matrix?, loads: loads?, laws: laws?, kernel })
 }
 
-/// Tangential joints a pair; two where the file says that it lies in space.
+/// Tangential joints per pair; two where the file says that it lies in space.
 fn tangents(cursor: Cursor<'_>, in_space: bool) -> Option<usize> {
     let found = cursor.whole("number of tangents", 1)?;
     if found < 2 && in_space {
@@ -304,7 +304,7 @@ fn laws(fields: &Fields<'_>, pairs: usize) -> Option<Vec<Law>> {
     Some(kinds.into_iter().enumerate().map(law).collect())
 }
 
-/// Where a pair's law does not take the number, 0 stands in the list.
+/// Whether the list has 0 for every pair whose law does not take the number.
 fn only_where_taken(cursor: Cursor<'_>, key: &str, kinds: &[LawKind], values: &[Number]) -> bool {
     let Some(entries) = cursor.list() else {
         return false;

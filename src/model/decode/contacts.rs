@@ -213,7 +213,7 @@ fn law_numbers(
             None => 1,
         };
         let values = if key == "gap" && sides::is_geometry(cursor) {
-            // Without sides there is nothing to measure, and that was said.
+            // Without sides there is nothing to measure, and that was reported.
             sides.and_then(|sides| geometry(cursor, sides))
         } else if is_border {
             per_pair(cursor, key, count, true)

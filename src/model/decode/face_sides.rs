@@ -7,7 +7,7 @@ use crate::model::face::Face;
 use crate::model::pair::Pair;
 use crate::model::vector::{dot, length, way};
 
-/// Of a face against another one or the ground.
+/// The sides of a face against another one or the ground.
 pub fn of_face<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
     let face = builder.face(at);
     let normal = match fields.optional("normal") {
@@ -46,8 +46,8 @@ pub fn of_face<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
     Some(Sides { shares, ..Sides::new(builder, face.nodes.clone(), pairs.collect(), normals) })
 }
 
-/// What stands at nodes carries what acts around them, and a pressure on quadratic sides is nothing at the corners of
-/// triangles and pulls at those of quadrilaterals.
+/// Pairs and springs at nodes carry the nodal forces of what acts around them, and those of a pressure on quadratic
+/// sides are zero at the corners of triangles and pull at those of quadrilaterals.
 pub fn refuse_quadratic(at: Cursor<'_>, face: &Face, what: &str) -> Option<()> {
     let Some(side) = face.sides.iter().find(|side| side.nodes.len() > 4) else { return Some(()) };
     let (count, corners) = match side.nodes.len() {
@@ -81,7 +81,8 @@ fn outward<'d>(builder: &Builder<'d>, at: Cursor<'d>, face: &Face) -> Option<Vec
     normals.into_iter().collect()
 }
 
-/// For each node of a face the position of its partner on the other one: at its place, or `apart` along the normal there.
+/// For each node of a face the position of its partner on the other one: at its place, or `apart` along the normal
+/// there.
 fn partners<'d>(
     builder: &Builder<'d>,
     [at, against]: [Cursor<'d>; 2],

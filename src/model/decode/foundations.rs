@@ -179,7 +179,7 @@ fn along_bar(builder: &Builder<'_>, bar: usize) -> Vec<Place> {
     places
 }
 
-/// Along which it resists beside its normal; without the sign of zeros.
+/// The directions in which it resists besides its normal; no zero has a sign.
 fn tangents(builder: &Builder<'_>, at: &Place) -> Vec<[f64; 3]> {
     let tangents = builder.structure.dimension.tangents(at.normal);
     tangents.into_iter().map(|tangent| tangent.map(|t| 0.0 + t)).collect()

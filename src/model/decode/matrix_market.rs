@@ -26,9 +26,9 @@ pub enum Size {
     },
     /// As many rows as columns, at least one.
     Square,
-    /// A row and a column for each of so many displacements.
+    /// A row and a column for each of this many displacements.
     OfDofs(usize),
-    /// A force for each of so many displacements: one column.
+    /// A force for each of this many displacements: one column.
     Forces(usize),
 }
 
@@ -68,7 +68,7 @@ impl Size {
         if fits { Ok(()) } else { Err((expected, help)) }
     }
 
-    /// Bytes that a file with so many entries takes.
+    /// Bytes that a file with this many entries takes.
     fn bytes(self, rows: usize, entries: usize) -> f64 {
         match self {
             Size::OfPairs { .. } | Size::Square => memory::for_joints(rows as f64),

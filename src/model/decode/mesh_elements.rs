@@ -105,7 +105,7 @@ fn append_bars<'d>(builder: &mut Builder<'d>, outline: &MeshOutline<'d>, group: 
     }
 }
 
-/// The parts of a mesh that hang together, with names: of the mesh, of a group that is just this part, or of a node.
+/// The connected parts of a mesh, with names: of the mesh, of a group that is just this part, or of a node.
 fn bodies(part: &MeshPart, elements: &[Element], first: usize, nodes: usize) -> Vec<Body> {
     let mut groups = Groups::new(nodes);
     elements.iter().for_each(|element| groups.join_all(element.nodes.iter().copied()));

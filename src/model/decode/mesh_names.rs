@@ -148,7 +148,7 @@ impl MeshPart {
         None
     }
 
-    /// Whether a group has this name in other letters, or one without members: then the direction is hardly meant.
+    /// Whether a group, with members or without, has this name in other letters: then the direction is hardly meant.
     fn is_nearly_a_group(&self, name: &str) -> bool {
         self.mesh.groups.iter().any(|group| group.name.eq_ignore_ascii_case(name))
             || self.mesh.empty_group(name).is_some()
@@ -182,7 +182,7 @@ impl MeshPart {
             .map(|group| group.name.as_str())
             .collect();
         if known.is_empty() {
-            // Of the other one there is nothing.
+            // One of the two is always empty.
             known.extend(self.surface.facing().iter().map(|facing| facing.name.as_str()));
             known.extend(self.boundary.facing().iter().map(|facing| facing.name.as_str()));
         }
@@ -243,7 +243,7 @@ impl MeshPart {
         (!nodes.is_empty()).then_some(nodes)
     }
 
-    /// The nodes of a group of nodes, of an edge or a face, or of what bounds a body and is none; none of bodies.
+    /// The nodes of a group of nodes, of an edge or a face, or of a boundary that is neither; none of bodies.
     fn nodes_of(&self, group: &Group) -> Vec<usize> {
         if let Members::NodeSet(nodes) | Members::Points(nodes) = &group.members {
             return self.used_of(nodes);

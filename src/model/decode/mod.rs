@@ -83,7 +83,7 @@ pub struct Under<'a> {
     /// Values of the parameters; without them those of the file.
     pub values: Option<&'a ParameterValues>,
     /// The parameter along which the numbers of [`Region::Amount`](crate::model::uses::Region::Amount) are read as
-    /// rates, in the place of their values.
+    /// rates, in place of their values.
     pub along: Option<&'a str>,
     /// Mesh files that were read already.
     pub meshes: MeshFiles,
@@ -118,7 +118,7 @@ pub fn scenario(name: &str, text: &str, path: Option<PathBuf>, mut under: Under<
             Ok(scenario)
         }
         (Some(problems), _) => Err(problems),
-        // Whatever is left out was reported; said all the same if that is ever broken.
+        // Whatever is missing was reported; this is said in case that rule is ever broken.
         (None, None) => Err(Problems::of_file(
             name,
             "the scenario could not be read, and no reason was recorded",

@@ -26,8 +26,8 @@ impl<'d> Cursor<'d> {
         self.magnitude(digits)
     }
 
-    /// A number as it stands: written out, a parameter, or an expression. Its region is noted as one in which the
-    /// parameters of it stand.
+    /// A number as it stands: written out, a parameter, or an expression. Notes that its parameters stand in its
+    /// region.
     pub fn symbolic(self) -> Option<Number> {
         if let Some(digits) = self.value.as_number() {
             return self.magnitude(digits).map(Number::Value);

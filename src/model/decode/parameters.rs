@@ -15,7 +15,7 @@ use crate::model::parameter::{Formulas, Parameter, ParameterValues};
 /// Names that other words of the program's language already are.
 const RESERVED: [&str; 8] = ["auto", "covering", "tie-break", "engine", "facets", "cone", "geometry", "pi"];
 
-/// A formula before it is known whether it goes in a circle.
+/// A formula before it is known whether it depends on itself.
 struct Draft<'d> {
     name: &'d str,
     cursor: Cursor<'d>,

@@ -8,7 +8,7 @@ use crate::model::structure::RigidBody;
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
     for cursor in entries(fields, "rigid") {
         let Some(body) = body(builder, cursor) else {
-            // What hangs on it cannot be judged.
+            // What depends on it cannot be judged.
             builder.elements_complete = false;
             continue;
         };

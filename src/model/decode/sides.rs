@@ -31,9 +31,9 @@ pub struct Sides {
 /// How the pairs of two edges are made.
 #[derive(Clone, Copy, PartialEq)]
 enum Method {
-    /// Of nodes at the same place.
+    /// From nodes at the same place.
     Nodes,
-    /// Of a node and what lies opposite.
+    /// From a node and what lies opposite.
     Mortar,
 }
 
@@ -75,7 +75,7 @@ pub fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {
     !builder.nodes.contains_key(word) && !near(word, [GROUND]).is_empty()
 }
 
-/// Of one node against another one or the ground.
+/// The sides of one node against another one or the ground.
 pub fn of_node<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
     let node = builder.node(at);
     let normal = fields.required("normal").and_then(|cursor| cursor.direction("normal"));
@@ -104,7 +104,7 @@ pub fn of_node<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
     })
 }
 
-/// Of an edge against another one or the ground.
+/// The sides of an edge against another one or the ground.
 pub fn of_edge<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
     let edge = builder.edge(at);
     let normal = match fields.optional("normal") {
@@ -173,7 +173,7 @@ pub fn gap_of(fields: &Fields<'_>) -> Gap {
     }
 }
 
-/// The other way; subtracting from 0 turns −0 into 0.
+/// The opposite direction; subtracting from 0 turns −0 into 0.
 pub fn turned(normal: [f64; 3]) -> [f64; 3] {
     normal.map(|n| 0.0 - n)
 }
@@ -233,7 +233,7 @@ impl TwoEdges<'_, '_> {
         let (Some(ahead), Some(back)) = (wrong(&forward), wrong(&backward)) else {
             return Ok(if wrong(&forward).is_none() { forward } else { backward });
         };
-        // Of the two ways the one that goes further is told.
+        // Of the two ways the one that goes further is reported.
         let (k, order) = if back > ahead { (back, backward) } else { (ahead, forward) };
         Err(Mismatch::Place { node: nodes[k], partner: others[order[k]] })
     }

@@ -1,4 +1,4 @@
-//! The source *superelement*: K and F of another program, in the place of elements and nodes.
+//! The source *superelement*: K and F of another program, in place of elements and nodes.
 
 use std::collections::HashMap;
 use std::path::Path;

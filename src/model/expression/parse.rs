@@ -91,7 +91,8 @@ pub fn parse(text: &str, names: &[&str]) -> Result<Vec<Step>, ExpressionError> {
     Ok(steps)
 }
 
-/// A name with `-` reads as a difference: it cannot stand in an expression, and where it could be meant it is told.
+/// A name with `-` reads as a difference: it cannot stand in an expression, and where it could be meant the error says
+/// so.
 fn refuse_hyphens(text: &str, names: &[&str]) -> Result<(), ExpressionError> {
     let of_name = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
     for name in names.iter().filter(|name| name.contains('-')) {

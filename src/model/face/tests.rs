@@ -92,8 +92,8 @@ fn water(level: f64) -> impl Fn(&FaceSpot) -> [f64; 3] {
     }
 }
 
-/// Water up to a level that cuts the faces: nothing sideways and no moment about the vertical, for the wet surface and the
-/// water line close a body. To rounding, also where the cut is a hyperbola or a conic in the parent of the side.
+/// Water up to a level that cuts the faces: nothing sideways and no moment about the vertical, for the wet surface and
+/// the water line close a body. To rounding, also where the cut is a hyperbola or a conic in the parent of the side.
 #[test]
 fn a_floating_body_is_not_pushed_sideways() {
     for shape in SHAPES {
@@ -168,7 +168,7 @@ fn water_on_a_wall() {
     }
 }
 
-/// Far from the origin, and where the level hardly wets a side: as exact as the heights are known, and soon.
+/// Far from the origin, and where the level hardly wets a side: as exact as the heights are known, and found quickly.
 #[test]
 fn levels_far_away_and_low() {
     for (z, level) in [(1e6, 0.7), (-3e4, 1e-7), (0.0, 1e-9), (0.0, 2.0 - 1e-9)] {

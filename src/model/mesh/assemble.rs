@@ -1,5 +1,5 @@
-//! The [`Mesh`] that is made of what a reader collected: numbers become indices, what is written twice becomes one, areas
-//! are judged and turned.
+//! The [`Mesh`] that is made of what a reader collected: numbers become indices, what is written twice becomes one,
+//! areas are judged and turned.
 
 use std::collections::HashMap;
 
@@ -172,7 +172,7 @@ fn in_one_plane(raw: &RawMesh, elements: &[MeshElement]) -> Result<(), Vec<MeshP
         }
     }
     let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-    // Areas of smaller elements are not numbers; coincident nodes have messages of their own.
+    // Areas of smaller elements are too small for f64; coincident nodes have messages of their own.
     const SMALLEST: f64 = 1e-150;
     if size > 0.0 && size < SMALLEST {
         let message = format!("the mesh is {size:e} wide and high, which is too small to compute with");
@@ -279,7 +279,7 @@ fn said(raw: &RawMesh, element: &MeshElement, fault: ShapeFault) -> (&'static st
     }
 }
 
-/// Name and place of a group in which nothing is.
+/// Name and place of an empty group.
 type Empty = (String, Place);
 
 /// Groups that have members, lines, areas and solids apart; and those that have none.

@@ -26,7 +26,7 @@ pub enum EdgeFault {
     WithoutMiddle(usize),
     /// A node at which more than two sides meet.
     Branch(usize),
-    /// So many pieces; the first node of two of them.
+    /// The number of pieces, and the first node of two of them.
     Pieces(usize, [usize; 2]),
     /// The node at which the body changes from one side to the other.
     Turns(usize),
@@ -51,7 +51,7 @@ fn usizes(nodes: &[u32]) -> Vec<usize> {
 }
 
 impl<M: Deref<Target = Mesh>> Boundary<M> {
-    /// Of a mesh.
+    /// The boundary of a mesh.
     pub fn of(mesh: M) -> Self {
         let mut sides = Sides::default();
         let areas = mesh.of_bodies().filter(|index| mesh.elements[*index as usize].shape.is_area());

@@ -1,4 +1,5 @@
-//! Segments in any order → chains, ordered by connection and set out by where they lie: the order of a file means nothing.
+//! Segments in any order → chains, ordered by connection and set out by where they lie: the order of a file means
+//! nothing.
 
 use std::collections::HashMap;
 

@@ -56,7 +56,7 @@ impl MeshProblem {
 pub fn as_problems(name: &str, found: Vec<MeshProblem>) -> Problems {
     let problem = |found: MeshProblem| {
         let place = found.place();
-        // What stands in an included file is told with the name of that file.
+        // A problem in an included file is reported with the name of that file.
         let (line, message) = match found.file == name {
             true => (found.line, found.message),
             false => (0, format!("{place}: {}", found.message)),
@@ -119,8 +119,8 @@ pub enum Members {
     NodeSet(Vec<u32>),
     /// Lines: an edge, or bars.
     Lines(Vec<u32>),
-    /// Sides of areas: the element, and the corner at which the side begins; of solids, and the number of the face; `None`:
-    /// all sides on the boundary.
+    /// Sides of areas: the element, and the corner at which the side begins; of solids, and the number of the face;
+    /// `None`: all sides on the boundary.
     Sides(Vec<(u32, Option<u8>)>),
     /// Areas: elements, or parts of the surface of solids.
     Areas(Vec<u32>),
@@ -228,7 +228,7 @@ impl Mesh {
         }
     }
 
-    /// Where a group of this name stands in which nothing is.
+    /// Where an empty group of this name stands.
     pub fn empty_group(&self, name: &str) -> Option<Place> {
         self.empty_groups.iter().find(|(empty, _)| self.same_name(empty, name)).map(|(_, place)| *place)
     }
@@ -238,7 +238,7 @@ impl Mesh {
         one == other || self.ignores_case && one.eq_ignore_ascii_case(other)
     }
 
-    /// A hash with nodes, elements and groups behind what it has.
+    /// The hash with nodes, elements and groups appended.
     pub fn hash(&self, mut hash: Hash) -> Hash {
         let mut put = |number: u64| hash = hash.and(&number.to_le_bytes());
         for node in &self.nodes {

@@ -71,7 +71,7 @@ pub struct Worst {
 }
 
 impl Overview {
-    /// Of a mesh.
+    /// The overview of a mesh.
     pub fn of(mesh: &Mesh) -> Overview {
         let place = |node: &MeshNode| Node { id: String::new(), position: node.position };
         let nodes: Vec<Node> = mesh.nodes.iter().map(place).collect();

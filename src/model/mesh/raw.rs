@@ -60,7 +60,7 @@ pub struct RawMesh {
     tags: Vec<u64>,
     pub groups: Vec<RawGroup>,
     group_of: HashMap<(u8, i64), usize>,
-    /// Names of groups in which nothing is, and where they stand.
+    /// Names of empty groups, and where they stand.
     pub empty_groups: Vec<(String, Place)>,
     pub skipped: Vec<String>,
     pub notes: Vec<String>,
@@ -210,7 +210,7 @@ impl RawMesh {
     }
 
     /// Gives groups the names they have in the file, by dimension and number; those of one dimension and name are one
-    /// group. Names of groups without members are kept, to be told where they are asked for.
+    /// group. Names of groups without members are kept, to be reported where they are asked for.
     pub fn name_groups(&mut self, mut names: HashMap<(u8, i64), (String, Place)>) {
         let mut first_of: HashMap<(u8, String), usize> = HashMap::new();
         let mut groups: Vec<RawGroup> = Vec::with_capacity(self.groups.len());

@@ -136,8 +136,8 @@ fn surfaces_of_abaqus() {
     assert_eq!(problem.help, "its faces are S1 to S6");
 }
 
-/// Middle nodes in the orders of the formats stand between the right corners: Gmsh's own, and Abaqus's, which is that of
-/// the shapes here.
+/// Middle nodes in the orders of the formats stand between the right corners: Gmsh's own, and Abaqus's, which is that
+/// of the shapes here.
 #[test]
 fn orders_of_middle_nodes() {
     let gmsh_tetrahedron = [[0, 1], [1, 2], [2, 0], [3, 0], [2, 3], [1, 3]].as_slice();

@@ -2,7 +2,7 @@
 
 use super::{MeshProblem, Place};
 
-/// What a line is read as that is not UTF-8; no line of a mesh is this by itself.
+/// Stands for a line that is not UTF-8; no line of a mesh reads so by itself.
 const NO_TEXT: &str = "\u{fffd}";
 
 /// How the numbers stand in the file.
@@ -54,7 +54,7 @@ impl<'a> Source<'a> {
         Place { file: 0, line: if self.form == Form::Text { self.line } else { 0 } }
     }
 
-    /// A problem with a whole line, of which something else was expected.
+    /// A problem with a whole line, where another one was expected.
     pub fn line_problem(&self, expected: &str, found: &str, help: &str) -> MeshProblem {
         if found == NO_TEXT {
             return self.problem(
@@ -116,7 +116,7 @@ impl<'a> Source<'a> {
         self.at += count;
     }
 
-    /// Goes behind the line `end`; without one to the end of the file, and says no.
+    /// Skips past the line `end`; where there is none, goes to the end of the file and returns false.
     pub fn skip_behind(&mut self, end: &str) -> bool {
         let mut from = self.at;
         while let Some(found) = self.bytes[from..].windows(end.len()).position(|word| word == end.as_bytes()) {
@@ -229,13 +229,13 @@ impl<'a> Source<'a> {
         word.parse().map_err(|_| self.unreadable(what, "a number", word.as_bytes()))
     }
 
-    /// A count of entries of which each has at least so many bytes.
+    /// A count of entries, each of at least `bytes_each` bytes.
     pub fn count(&mut self, what: &'static str, bytes_each: usize) -> Result<usize, MeshProblem> {
         let count = self.size(what)?;
         self.fits(count, what, bytes_each)
     }
 
-    /// The count, if so many entries can still stand in the file.
+    /// The count, if the rest of the file has room for this many entries.
     pub fn fits(&self, count: u64, what: &str, bytes_each: usize) -> Result<usize, MeshProblem> {
         let most = self.left() / bytes_each;
         if count <= most as u64 {
@@ -247,7 +247,7 @@ impl<'a> Source<'a> {
         ))
     }
 
-    /// Goes on behind the end of the line, where binary numbers begin.
+    /// Skips to the end of the line, behind which binary numbers begin.
     pub fn end_text_line(&mut self) {
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|byte| *byte == b'\n').map_or(rest.len(), |end| end + 1);

@@ -42,7 +42,7 @@ fn usizes(nodes: &[u32]) -> Vec<usize> {
 }
 
 impl<M: Deref<Target = Mesh>> Surface<M> {
-    /// Of a mesh; without solids it has no faces.
+    /// The surface of a mesh; without solids it has no faces.
     pub fn of(mesh: M) -> Self {
         let mut faces = Faces::default();
         for (index, element) in mesh.elements.iter().enumerate() {

@@ -8,8 +8,8 @@ use crate::model::scenario::{GivenContactSystem, Scenario, Stage};
 use crate::model::structure::{Load, Structure};
 use crate::model::tree::{Kind, Node};
 
-/// Cases whose loads are nothing whatever the parameters are, items without the property they need, cases that are
-/// counted nowhere.
+/// Cases whose loads are nothing whatever the parameters are, items without the property they need, cases that never
+/// act.
 pub fn of_structure(scenario: &Scenario, structure: &Structure, file: Node<'_>) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let materials = Materials::of(structure, file);
@@ -52,7 +52,7 @@ pub fn of_contact_system(scenario: &Scenario, system: &GivenContactSystem) -> Ve
     warnings
 }
 
-/// A case that counts nothing: by its own factor, or because no stage and no combination names it.
+/// A case that never acts: its own factor is 0, or no stage and no combination names it.
 fn counted(scenario: &Scenario, case: &str, factor: &Number, path: &str) -> Option<Warning> {
     if *factor == Number::Value(0.0) {
         return Some(Warning::new(
@@ -118,9 +118,9 @@ fn without_property(
 /// The materials of the file and of its elements.
 struct Materials<'v> {
     names: Vec<&'v str>,
-    /// Of all elements, in increasing order.
+    /// Indices of the materials of all elements, in increasing order.
     used: Vec<usize>,
-    /// Of bars, plates, quads and triangles by their ids.
+    /// Index of the material of each bar, plate, quad and triangle, by its id.
     of: HashMap<&'v str, usize>,
 }
 

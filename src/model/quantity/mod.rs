@@ -1,7 +1,7 @@
 //! What can be asked of an answer: one language for `expect`, `show`, probes, sweeps, paths and envelopes.
 //!
-//! A quantity is a word and its arguments. [`words`] has the table of the words, [`read`](mod@read) reads them against the
-//! names of a scenario; the values are read by [`crate::path::quantity`].
+//! A quantity is a word and its arguments. [`words`] has the table of the words, [`read`](mod@read) reads them against
+//! the names of a scenario; the values are read by [`crate::path::quantity`].
 
 mod names;
 mod of_stress;
@@ -105,7 +105,7 @@ impl Quantity {
         }
     }
 
-    /// What the word means that it is or that its pairs are asked for.
+    /// The meaning of its word; of several pairs, the meaning of the word that each of them is asked for.
     fn meaning(&self) -> Meaning {
         match self.innermost() {
             Quantity::Answer(which) => Meaning::Answer(*which),

@@ -21,7 +21,7 @@ fn known<'n>(what: &str, word: &str, names: &[&'n str]) -> Result<&'n str, Quant
     found.copied().ok_or_else(|| QuantityError(no_such(what, word, names.iter().copied())))
 }
 
-/// Reads one quantity from the front of `words`; what is left comes back.
+/// Reads one quantity from the front of `words`; returns it with the words that are left.
 ///
 /// # Errors
 /// An unknown word or name, with the one that may be meant.
@@ -42,7 +42,7 @@ pub fn read<'w>(words: &'w [String], names: &Names<'_>) -> Result<(Quantity, &'w
     }
     let found = read_words(first, rest, names);
     if found.is_err() {
-        // Typed without quotes a name with blanks comes in words; of several the longest.
+        // Typed without quotes, a name with blanks comes as several words; of several such names the longest is taken.
         let typed = |name: &str| {
             let parts: Vec<&str> = name.split_whitespace().collect();
             let fits = words.len() >= parts.len() && parts.iter().zip(words).all(|(part, word)| part == word);
@@ -183,7 +183,7 @@ fn known_place(what: &str, name: &str, names: &Names<'_>, others: &[&str]) -> Re
     if names.nodes.is_empty() {
         return error(format!("no {what} `{name}`: this scenario has no structure"));
     }
-    // In order: of equally near names always the same one is told.
+    // In order, so that of equally near names the same one is always suggested.
     let mut all: Vec<&str> = names.nodes.iter().chain(others).copied().collect();
     all.sort_unstable();
     error(format!("no {what} `{name}`{}", did_you_mean_typed(name, all)))

@@ -1,5 +1,6 @@
-//! The table of the words of the language of quantities. Everything that lists or names quantities comes from it: `show`,
-//! `expect`, `find`, `envelope`, `sweep --columns`, the keys of `sort`, what `max` and `sum` take, completion and help.
+//! The table of the words of the language of quantities. Everything that lists or names quantities comes from it:
+//! `show`, `expect`, `find`, `envelope`, `sweep --columns`, the keys of `sort`, what `max` and `sum` take, completion
+//! and help.
 //!
 //! To add a quantity of a pair, a node, a bar, a stress or an answer: a variant of its family here, its line in
 //! [`WORDS`], and its reader in `path/quantity`, which the compiler asks for.
@@ -136,7 +137,7 @@ pub enum OfNode {
 }
 
 impl OfNode {
-    /// The component of a displacement; `None` of a reaction.
+    /// The component of a displacement; `None` for a reaction.
     pub fn displaced(self) -> Option<Component> {
         match self {
             OfNode::Ux => Some(Component::X),

@@ -221,7 +221,7 @@ fn schema_and_decoder_know_the_same_keys() {
     }
 }
 
-/// What the decoder expects in the place of the word `zzz`.
+/// What the decoder expects in place of the word `zzz`.
 fn decoder_words(source: &Value) -> String {
     let mut text = json!({ "format": "stickslip/1", "title": "t" });
     for (key, value) in source.as_object().expect("keys") {

@@ -169,8 +169,7 @@ impl AreaShape {
         n
     }
 
-    /// Values at the nodes of the function through the values at the integration points: constant (3 nodes), linear
-    /// (6), bilinear through 2 × 2 points (4 and 8: for 8 the 2 × 2 points where its stresses are best).
+    /// Points (ξ, η) at which the stresses of the element are best: those of the stiffness, 2 × 2 of them for 8 nodes.
     pub fn stress_points(self) -> Vec<[f64; 2]> {
         match self {
             AreaShape::Quad8 => AreaShape::Quad4.stress_points(),
@@ -178,7 +177,8 @@ impl AreaShape {
         }
     }
 
-    /// Weights of the values at the [`stress_points`](Self::stress_points) that give the value at (ξ, η).
+    /// Weights of the values at the [`stress_points`](Self::stress_points) that give the value at (ξ, η): constant (3
+    /// nodes), linear (6), bilinear (4 and 8).
     pub fn extrapolation(self, [x, y]: [f64; 2]) -> Vec<f64> {
         match self {
             AreaShape::Triangle3 => vec![1.0],

@@ -7,8 +7,8 @@ pub use areas::{AreaShape, MOST};
 pub use solids::{MOST as MOST_OF_SOLID, SolidShape, TETRAHEDRON_SIDES, VolumePoint};
 
 /// Gradients against central differences, exact for quadratics up to rounding; the serendipity functions have third
-/// derivatives below 1 along an axis, so that the error is below h²/6. Returns the largest magnitude of their sums, which
-/// are zero up to rounding.
+/// derivatives below 1 along an axis, so that the error is below h²/6. Returns the largest magnitude of their sums,
+/// which are zero up to rounding.
 #[cfg(test)]
 fn assert_derivatives<const AXES: usize, const MOST: usize>(
     at: [f64; AXES],

@@ -8,10 +8,11 @@
 //!     20 nodes  serendipity: corners, then the middles of 1-2, 2-3, 3-4, 4-1, of 5-6, 6-7, 7-8, 8-5 above them,
 //!               and of 1-5, 2-6, 3-7, 4-8; 3 × 3 × 3 Gauss points
 //! ```
-//! Corners 1-2-3 of a tetrahedron go round counter-clockwise as seen from 4, 1-2-3-4 of a hexahedron as seen from 5-6-7-8,
-//! which lie above them. Forces of a constant stress are exact in any shape: adj J ∇N has the degree 5 in each variable of
-//! the hexahedron and 3 in all of the tetrahedron with bulging sides. Hughes, *The Finite Element Method*, 1987, §3.2, §3.8
-//! and appendices 3.I, 3.II; fourteen points: Walkington, *Quadrature on simplices of arbitrary dimension*, 2000.
+//! Corners 1-2-3 of a tetrahedron go round counter-clockwise as seen from 4, 1-2-3-4 of a hexahedron as seen from
+//! 5-6-7-8, which lie above them. Forces of a constant stress are exact in any shape: adj J ∇N has the degree 5 in each
+//! variable of the hexahedron and 3 in all of the tetrahedron with bulging sides. Hughes, *The Finite Element Method*,
+//! 1987, §3.2, §3.8 and appendices 3.I, 3.II; fourteen points: Walkington, *Quadrature on simplices of arbitrary
+//! dimension*, 2000.
 
 use crate::doubled::Real;
 

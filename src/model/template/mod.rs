@@ -1,7 +1,8 @@
-//! `new`: scenarios to begin with. A template is the text of a scenario whose dimensions are parameters; where the count
-//! of its parts varies, the text is written for that count.
+//! `new`: scenarios to begin with. A template is the text of a scenario whose dimensions are parameters; where the
+//! count of its parts varies, the text is written for that count.
 //!
-//! To add a kind: a file here with its `TEMPLATE` (the text may be that of an embedded scenario), and its line in [`ALL`].
+//! To add a kind: a file here with its `TEMPLATE` (the text may be that of an embedded scenario), and its line in
+//! [`ALL`].
 
 mod arch;
 mod block;
@@ -90,7 +91,7 @@ pub struct Choice {
     pub about: String,
 }
 
-/// What `new` was asked for and cannot be had.
+/// Why `new` cannot make what was asked for.
 #[derive(Debug, Error)]
 pub enum TemplateError {
     /// No such kind.
@@ -152,7 +153,7 @@ pub enum TemplateError {
     Broken {
         /// The kind.
         kind: &'static str,
-        /// What of it.
+        /// What is wrong with it.
         what: String,
     },
 }
@@ -258,7 +259,7 @@ impl Template {
         Ok(())
     }
 
-    /// The text with the chosen values in the place of the defaults; a slider that does not reach a value is widened.
+    /// The text with the chosen values in place of the defaults; a slider that does not reach a value is widened.
     fn with_values(&self, text: &str, plain: &Scenario, values: &ParameterValues) -> Result<String, TemplateError> {
         let broken = |what: String| TemplateError::Broken { kind: self.kind, what };
         let root = CstRootNode::parse(text, &ParseOptions::default()).map_err(|error| broken(error.to_string()))?;

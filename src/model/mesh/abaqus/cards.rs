@@ -7,7 +7,7 @@ use super::super::source::shown;
 use super::super::{MeshProblem, Place, file};
 use crate::text::file::{LARGEST, reason};
 
-/// At most so many files are open in one another, and read in all.
+/// Most files that are open inside one another, and most that are read in all.
 const DEEPEST: usize = 20;
 const MOST_FILES: usize = 1000;
 
@@ -202,7 +202,7 @@ pub fn whole(field: &str) -> Option<u64> {
     field.strip_prefix('+').unwrap_or(field).parse().ok()
 }
 
-/// A number, with an exponent of Fortran too; nothing is zero.
+/// A number, its exponent perhaps in Fortran's form; an empty field is 0.
 pub fn number(field: &str) -> Option<f64> {
     if field.is_empty() {
         return Some(0.0);

@@ -19,7 +19,7 @@ use sets::Sets;
 use surfaces::Surface;
 use types::ElementType;
 
-/// Keywords that make a mesh; one that differs in a letter is a slip.
+/// Keywords that make a mesh; one that differs in a letter is taken for a slip of the pen.
 const KEYWORDS: [&str; 8] = ["NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "INCLUDE", "PART", "INSTANCE"];
 
 /// What the data lines that come next belong to.
@@ -339,7 +339,7 @@ impl Reader<'_> {
     fn groups(&mut self) -> Result<(), MeshProblem> {
         let mut element_of: HashMap<u64, u32> = HashMap::new();
         for index in 0..self.mesh.element_count() {
-            // Before sets miss what the second one should have been.
+            // Reported here, before sets miss the number that the second one should have had.
             if let Some(first) = element_of.insert(self.mesh.element(index).0, index) {
                 return Err(self.mesh.duplicate_element(index, first));
             }

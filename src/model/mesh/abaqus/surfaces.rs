@@ -143,8 +143,8 @@ impl Found<'_> {
         Ok(sides)
     }
 
-    /// The corner at which a side of an area begins, or the number of a face of a solid, from 0; `None` for all sides on
-    /// the boundary.
+    /// The corner at which a side of an area begins, or the number of a face of a solid, from 0; `None` for all sides
+    /// on the boundary.
     fn side(&self, surface: &Surface, index: u32, face: Option<&str>, place: Place) -> Result<Option<u8>, MeshProblem> {
         let (tag, shape, _) = self.mesh.element(index);
         if shape.dimension() == 1 {

@@ -11,7 +11,7 @@ pub struct ElementType {
 }
 
 impl ElementType {
-    /// By its name.
+    /// The type of this name.
     ///
     /// # Errors
     /// What it is instead, and what to do.
