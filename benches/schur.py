@@ -4,9 +4,10 @@
     pip install -r benches/requirements.txt        # python-mumps needs the library: libmumps-seq-dev, libopenblas-dev
     cargo build --release --example measure
     RAYON_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1 python benches/schur.py [--pairs 401 1000 2000]
-    … python benches/schur.py --bricks 30 30 10         # a block of bricks on a plane in their place
+    … python benches/schur.py --bricks 30 30 10         # a block of bricks on a plane instead
 
-Seconds of the processor, one thread each: those of the clock depend on what else the machine does. Also LAPACK's Cholesky factorization and eigenvalues of a dense matrix of the order of R.
+Seconds of the processor, one thread each: those of the clock depend on what else the machine does. Also LAPACK's
+Cholesky factorization and eigenvalues of a dense matrix of the order of R.
 """
 
 import argparse

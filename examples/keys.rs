@@ -1,13 +1,14 @@
 //! What a key of the full screen costs: milliseconds and bytes, at several numbers of contact pairs.
 //!
 //! ```text
-//! keys [WIDTHxHEIGHT] PAIRS…        a table in Markdown; 140x45 and 10 300 1000 if nothing is said
+//! keys [WIDTHxHEIGHT] PAIRS… a table in Markdown; 140x45 and 10 300 1000 by default
 //! ```
 //!
-//! Two flat plates on one another. `screen` is from the key to the bytes of its frames, `session` what the session works
-//! meanwhile: milliseconds of the processor (of all threads for the session), the least of several repetitions, so that
-//! what else the machine does counts little. `first` is what a slider or an arrow that is held costs until
-//! the new states stand on the screen; displacements, the check of equilibrium and the pivots follow when it rests.
+//! Two flat plates on one another. `screen` is the time from the key to the bytes of its frames, `session` the work of
+//! the session meanwhile: milliseconds of the processor (of all threads for the session), the least of several
+//! repetitions, so that other work of the machine counts little. `first` is the cost of a slider or an arrow that is
+//! held down until the new states are on the screen; displacements, the check of equilibrium and the pivots follow when
+//! it rests.
 
 #[path = "../benches/common/mod.rs"]
 #[allow(dead_code)]
@@ -101,8 +102,8 @@ impl Rig {
         Ok(Rig { session, state, terminal, sent })
     }
 
-    /// Presses a key, carries out the jobs that follow from it, draws after each as the loop does; `first`: only one of them,
-    /// as where the next key comes before the others begin.
+    /// Presses a key, carries out the jobs that follow from it, draws after each as the loop does; `first`: only one of
+    /// them, as when the next key comes before the others begin.
     fn press(&mut self, key: &str, first: bool) -> Result<Cost, Failure> {
         let before = self.sent.0.get();
         let key = Key::parse(key).ok_or_else(|| format!("no key `{key}`"))?;
@@ -139,8 +140,8 @@ impl Rig {
     }
 }
 
-/// What is measured: its name, the keys that lead there, the keys that are pressed in turn. Of one that is named `first`
-/// only the first job is carried out.
+/// What is measured: its name, the keys that lead there, the keys that are pressed in turn. Where the name ends in
+/// `first`, only the first job is carried out.
 const ROWS: &[(&str, &[&str], &[&str])] = &[
     ("row of Pairs", &["3"], &["down"]),
     ("page of Pairs", &["3"], &["pagedown", "pageup"]),

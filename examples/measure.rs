@@ -4,14 +4,14 @@
 //! measure engine PAIRS F T one-sided|symmetric [FOLDER]   exports M, q, d to FOLDER; a run per line read from stdin
 //! measure warm PAIRS F T REPETITIONS                      cold, load changed, friction changed
 //! measure resolve NX NY REPETITIONS                       a load inside the model moved, a size moved
-//! measure trace PAIRS F T                                 the pull followed from 0 to T: a breakpoint, a pivot of a cold run
-//! measure sweep PAIRS F T POINTS THREADS [stands]         pulls up to T cold and following one another; `stands`: the upper
-//!                                                         plate is held by springs, so that answers may be proved unique
+//! measure trace PAIRS F T                                 the pull from 0 to T: cost of a breakpoint, of a pivot
+//! measure sweep PAIRS F T POINTS THREADS [stands]         pulls up to T, cold and one following another; `stands`:
+//!                                                         springs hold the upper plate: answers can be unique
 //! measure condense NX NY WIDTH HEIGHT CASES [plain]       two plates; `plain`: also faer's own factorization
 //! measure schur NX NY WIDTH HEIGHT FOLDER                 exports K_m and C of the same to FOLDER, and condenses it
-//! measure space NX NY NZ FACETS [FOLDER]                  a block of bricks on a plane: condensed (K_m and C to FOLDER),
+//! measure space NX NY NZ FACETS [FOLDER]                  bricks on a plane: condensed (K_m and C to FOLDER),
 //!                                                         solved on the polygon and on Coulomb's cone
-//! measure given PAIRS                                     the check of a matrix of a file beside a Cholesky factorization
+//! measure given PAIRS                                     the check of a given matrix, and a Cholesky factorization
 //! measure exact PAIRS F                                   the exact check of an answer
 //! ```
 

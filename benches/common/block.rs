@@ -20,8 +20,8 @@ pub struct Block {
 }
 
 impl Block {
-    /// side² pairs: springs of stiffness 1 along n and 0.6 along t, coupled with their neighbours, under a block of weight 1
-    /// a pair.
+    /// side² pairs: springs of stiffness 1 along n and 0.6 along t, coupled with their neighbours, under a block of
+    /// weight 1 a pair.
     pub fn new(side: usize) -> Block {
         let m = side * side;
         let place = |i: usize| [(i % side) as f64, (i / side) as f64].map(|x| x / (side - 1) as f64 - 0.5);
@@ -71,7 +71,7 @@ impl Block {
         }
     }
 
-    /// The answer on the cone that Newton's method finds from there.
+    /// The answer on the cone that Newton's method finds from `start`.
     ///
     /// # Errors
     /// Where it finds none.
@@ -87,8 +87,8 @@ impl Block {
         answer_on_cone(&problem, start, &Quiet)
     }
 
-    /// An answer with every displacement off by up to `share` of itself and every slip turned by up to a fifth of a radian:
-    /// as far off as that of a polygon.
+    /// An answer with every displacement off by up to `share` of itself and every slip turned by up to a fifth of a
+    /// radian: as far off as that of a polygon.
     pub fn perturbed(&self, z: &DVector<f64>, share: f64) -> DVector<f64> {
         let wave = |k: usize| (k as f64 * 1.7).sin();
         let mut z = DVector::from_fn(z.len(), |k, _| z[k] * (1.0 + share * wave(k)));

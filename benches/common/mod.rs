@@ -1,6 +1,6 @@
 //! Contact problems for measurements, generated: two plates on one another, the lower one fixed along its base.
 
-#[allow(dead_code)] // the examples take their own part of what stands here
+#[allow(dead_code)] // each example uses only a part of this module
 pub mod block;
 
 use stickslip::contact::problem::ContactProblem;
@@ -88,8 +88,8 @@ impl Plates {
         )
     }
 
-    /// The same with `T` inside the loads and the width of the upper plate a parameter `b`: what moves then is RF with the
-    /// kept factorization, or K.
+    /// The same with `T` inside the loads and the width of the upper plate a parameter `b`: what moves then is RF with
+    /// the kept factorization, or K.
     pub fn inner_scenario(&self) -> Scenario {
         let text = self
             .text()
