@@ -1,7 +1,7 @@
 //! What a key of the full screen costs: milliseconds and bytes, at several numbers of contact pairs.
 //!
 //! ```text
-//! keys [WIDTHxHEIGHT] PAIRS… a table in Markdown; 140x45 and 10 300 1000 by default
+//! keys [WIDTHxHEIGHT] PAIRS…        a table in Markdown; 140x45 and 10 300 1000 by default
 //! ```
 //!
 //! Two flat plates on one another. `screen` is the time from the key to the bytes of its frames, `session` the work of

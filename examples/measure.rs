@@ -214,7 +214,7 @@ fn computed<T>(work: impl FnOnce() -> T) -> (f64, f64, T) {
     (clock.elapsed().as_secs_f64(), cpu_seconds() - before, result)
 }
 
-/// The path of a load: what a breakpoint costs, beside a pivot of a cold run at its end.
+/// The path of a load: what a breakpoint costs, compared with a pivot of a cold run at its end.
 fn trace(arguments: &[String]) -> Result<Value, Failure> {
     let pairs: usize = number(arguments, 0, "PAIRS")?;
     let (friction, traction): (f64, f64) = (number(arguments, 1, "F")?, number(arguments, 2, "T")?);

@@ -11,7 +11,7 @@ use stickslip::solve::problem::{contact_problem, factors};
 use stickslip::solve::{Prepared, prepare};
 use stickslip::watch::Quiet;
 
-/// What acts on the upper plate beside its weight.
+/// What acts on the upper plate besides its weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pull {
     /// Forward and up on one side, springs on the same side: no symmetry, a few accidental ties.

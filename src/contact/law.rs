@@ -4,8 +4,8 @@
 //!   normal joint       unilateral: x_n ≥ 0 ⟂ z_n ≥ 0, which starts at the gap g;   bilateral: z_n = 0
 //!   tangential joint   free: x_τ = 0;   bounded: |x_τ| ≤ f x_n + c
 //! ```
-//! Only the decoder and the report of the law know the word that a file has for this; a known friction bound r_f is f =
-//! 0 and c = r_f. The directions of friction are those of [`super::polygon`]: a pair in the plane has two.
+//! Only the decoder and the report of the law know the word that a file has for this; a known friction bound r_f is
+//! f = 0 and c = r_f. The directions of friction are those of [`super::polygon`]: a pair in the plane has two.
 
 use crate::model::pair::{Law, LawKind};
 use crate::model::parameter::Number;

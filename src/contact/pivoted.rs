@@ -168,7 +168,7 @@ fn swap(a: &mut DMatrix<f64>, k: usize, p: usize) {
     }
 }
 
-/// Column k of L below its diagonal: less the columns of the panel from `from` on, divided by the root of the pivot.
+/// Finishes column k of L: subtracts the columns of the panel from `from` on and divides by the root of the pivot.
 fn finish_column(l: &mut DMatrix<f64>, from: usize, k: usize, root: f64) {
     let n = l.nrows();
     let (done, rest) = l.as_mut_slice().split_at_mut(k * n);

@@ -1,5 +1,5 @@
-//! The friction polygon: the directions in which a pair can slip, and between which friction is interpolated (method
-//! §7).
+//! The friction polygon: the directions in which a pair can slip, and between which friction is interpolated
+//! (method §7).
 //!
 //! ```text
 //!   x^k = f x_n + c + d_k·x_τ ≥ 0  ⟂  ζ_k ≥ 0,      z_τ = Σ ζ_k d_k,      k = 0 … K − 1

@@ -105,7 +105,7 @@ impl Uniqueness {
 
 impl Form {
     /// The form with the weight and the α under which the bound is largest in the direction of `frictions`; `None`
-    /// where R itself is not positive definite beside its kernel.
+    /// where R itself is not positive definite outside its kernel.
     fn of(system: &ContactSystem, frictions: &[f64]) -> Option<Form> {
         let stiffness = system.pivot_stiffness();
         let k = system.joint_count();
@@ -143,7 +143,7 @@ impl Form {
         best.map(|(_, form)| form)
     }
 
-    /// Estimates of the largest eigenvalues of R_n F R_nᵀ and of F beside the weighted R; `None` where that is not
+    /// Estimates of the largest eigenvalues of R_n F R_nᵀ and of F relative to the weighted R; `None` where that is not
     /// positive definite.
     fn largest(&self, system: &ContactSystem, frictions: &[f64]) -> Option<[f64; 2]> {
         let factor = Cholesky::new(&(&self.weighted + &self.kernel * self.kernel.transpose()))?;
@@ -203,7 +203,7 @@ impl Form {
         let size = a.diagonal().amax().max(self.weighted.diagonal().amax());
         let rounding = ROUNDING * (k * k) as f64 * f64::EPSILON * size;
         if self.kernel.ncols() > 0 {
-            // The motions of the kernel must cost nothing in A either: then A + Z Zᵀ tells of the others alone.
+            // The motions of the kernel must cost nothing in A either: then A + Z Zᵀ shows the others alone.
             if (&a * &self.kernel).amax() > rounding {
                 return false;
             }

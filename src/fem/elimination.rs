@@ -257,8 +257,8 @@ impl Elimination {
         }
     }
 
-    /// S s on the base dofs, lengths and radians: what follows the imposed displacements `s` with all joints on and v =
-    /// 0.
+    /// S s on the base dofs, lengths and radians: what follows the imposed displacements `s` with all joints on and
+    /// v = 0.
     pub fn settled(&self, s: &[f64]) -> Vec<f64> {
         let row = |row: &Row| match row {
             Row::Held(number) => number.map_or(0.0, |number| s[number as usize]),

@@ -42,7 +42,7 @@ pub struct BalancedState<'a> {
     pub force: &'a DVector<f64>,
 }
 
-/// The largest residual relative to the forces that meet there, beyond what rounding may leave.
+/// The largest residual relative to the forces that meet there and to what rounding may leave.
 fn largest_share(residual: &[f64], scale: &[f64], rounding: &[f64]) -> f64 {
     let shares = residual.iter().zip(scale.iter().zip(rounding)).map(|(r, (scale, rounding))| {
         let size = scale + rounding / TOLERANCE;

@@ -46,7 +46,7 @@ pub struct Factor {
 
 impl Factor {
     /// Orders and factorizes K_m (scaled in place) with the terms (row, joint, value) of C for `joints` joints; the
-    /// rows marked as last are ordered behind all others where that costs less.
+    /// rows marked as last are ordered after all others where that costs less.
     ///
     /// Where rounding makes a pivot fail, the factor is that of a slightly shifted K_m ([`Factor::is_shifted`]): good
     /// for refinement, but neither for R nor for a verdict on the structure.
@@ -209,7 +209,7 @@ impl Factor {
     }
 }
 
-/// The lower triangle of [K_m .; Cᵀ 0], K_m permuted, the rows of z behind it.
+/// The lower triangle of [K_m .; Cᵀ 0], K_m permuted, the rows of z after it.
 fn with_joints(k_m: &SymmetricSparse, position: &[u32], scale: &[f64], c: &[Coupling], joints: usize) -> Terms {
     let n = k_m.order();
     Terms::new(n + joints, |visit| {

@@ -1,6 +1,6 @@
-//! Which order of elimination costs less: the unknowns that joints tie to others behind the rest, or among them.
+//! Which order of elimination costs less: the unknowns that joints tie to others after the rest, or among them.
 //!
-//! Behind the rest, they keep the bodies apart up to there, and only the body that C belongs to carries the rows of z;
+//! After the rest, they keep the bodies apart up to there, and only the body that C belongs to carries the rows of z;
 //! but they end in one dense block with all of z, with about as many unknowns as joints: the cube of their number.
 //! Among the rest each cut through the bodies reaches only the joints on its own stretch, and all of them carry rows of
 //! z. Counted for the matrix at hand.
@@ -60,7 +60,7 @@ fn dissected(unknowns: usize) -> f64 {
     829.0 / 84.0 * 8.0 * (unknowns as f64 / 2.0).powf(1.5)
 }
 
-/// K_m with the rows of z behind it, in some order of elimination.
+/// K_m with the rows of z after it, in some order of elimination.
 pub struct Ordered {
     /// Position of each row of K_m.
     position: Vec<u32>,

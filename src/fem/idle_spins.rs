@@ -1,13 +1,13 @@
 //! Rotations that move nothing and that nothing resists. They are held (`body_rows`), and loads that would drive them
 //! are refused (`outline`).
 //!
-//! A part whose nodes all lie on one line can spin about it, a node to which bars hand on only their torque can turn
+//! A part whose nodes all lie on one line can spin about it, a node to which bars transmit only their torque can turn
 //! about any axis. Such are bars between ball joints, divided or not, rigid bodies of which only displacements are
 //! held, and nodes between hinges:
 //!
 //! ```text
 //!     s_p a_p, θ_n     spin of each part on a line about its axis a_p, rotation of each lone node
-//!     a_b·θ = s_b      at a hinge: it hands on the torque of its bar b
+//!     a_b·θ = s_b      at a hinge: it transmits the torque of its bar b
 //! ```
 //!
 //! with what supports, ties and springs hold: the null space of these rows, group by group of what they connect.
@@ -140,7 +140,7 @@ impl Spins<'_> {
         self.parts.turning[node].map_or(Vec::new(), |part| self.about(part, axis, factor).collect())
     }
 
-    /// Σ a·unknown = 0: what supports, ties, springs and a superelement hold, and what hinges hand on.
+    /// Σ a·unknown = 0: what supports, ties, springs and a superelement hold, and what hinges transmit.
     fn resisted(&self, structure: &Structure) -> Vec<Terms> {
         let mut rows: Vec<Terms> = Vec::new();
         let held = structure.supports.iter().map(|support| (support.node, support.component));

@@ -48,8 +48,8 @@ impl Kinematics {
         &self.motions
     }
 
-    /// Whether there are surely no others: no bars, no superelement, not too many connected parts, and no part so much
-    /// softer than another that only the numbers could tell whether it holds.
+    /// Whether there are surely no others: no bars, no superelement, not too many parts connected to one another, and
+    /// no part so much softer than another that only the numbers could tell whether it holds.
     pub fn is_complete(&self) -> bool {
         self.complete
     }

@@ -118,7 +118,7 @@ struct Cluster {
     supports: Vec<usize>,
     springs: Vec<usize>,
     ties: Vec<usize>,
-    /// Bars in space that hand on their torque at a hinge.
+    /// Bars in space that transmit their torque at a hinge.
     hinged: Vec<usize>,
 }
 
@@ -251,7 +251,7 @@ impl<'a> Unknowns<'a> {
         for &node in &cluster.nodes {
             for &other in &self.parts.at_node[node][1..] {
                 for &component in self.structure.dimension.translations() {
-                    // A displacement that is no dof of the superelement does not move its part.
+                    // A superelement does not take part in a displacement that is none of its dofs.
                     if given.as_ref().is_some_and(|given| !given.contains(&(node, component))) {
                         continue;
                     }

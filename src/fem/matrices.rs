@@ -14,7 +14,7 @@ pub struct Matrices {
     pub dofs: Vec<(usize, Component)>,
     /// Lower triangle of K: (row, column, value), row ≥ column, none of them 0, by columns.
     pub stiffness: Vec<(usize, usize, f64)>,
-    /// F of each load case for a factor of 1; settlements are none.
+    /// F of each load case for a factor of 1, without settlements.
     pub forces: Vec<Vec<f64>>,
 }
 

@@ -1,8 +1,8 @@
 //! The order in which the unknowns of the main system are eliminated: nested dissection of its nodes.
 //!
 //! The nodes are cut in two where the fewest of them touch the other side, straight across one of the axes; the cut
-//! comes behind both halves, and so on in each half. What is small enough is ordered by approximate minimum degree. Of
-//! a plate this leaves less fill than minimum degree alone, and much less where many rows have to come last anyway: a
+//! comes after both halves, and so on in each half. What is small enough is ordered by approximate minimum degree. Of a
+//! plate this leaves less fill than minimum degree alone, and much less where many rows have to come last anyway: a
 //! half then reaches only those that it touches.
 
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
@@ -21,7 +21,7 @@ use crate::watch::Watch;
 const LEAF: usize = 64;
 /// Halves of more nodes are ordered on two threads.
 const WORTH_SPREADING: usize = 4096;
-/// In the place of a number: there is none.
+/// Stands for a number that is missing.
 const NONE: u32 = u32::MAX;
 
 /// Where the unknowns are.
@@ -31,7 +31,7 @@ pub struct Places<'a> {
     pub node: &'a [u32],
     /// Coordinates of each node.
     pub coordinates: &'a [[f64; 3]],
-    /// Whether each unknown has to come behind all others.
+    /// Whether each unknown has to come after all others.
     pub last: &'a [bool],
 }
 

@@ -131,7 +131,7 @@ impl Parts {
             parts.push(turns.len() as u32);
             turns.push(false);
         }
-        // A node to which bars hand on nothing but their torque turns by itself.
+        // A node to which bars transmit nothing but their torque turns by itself.
         for element in &structure.elements {
             for (at, &node) in element.nodes.iter().enumerate() {
                 if turning[node].is_none() && element.components(at).contains(&Component::Rx) {

@@ -53,7 +53,7 @@ fn sizes(lcp: &MirroredLcp) -> Sizes {
     Sizes {
         q: vec![q; lcp.size()],
         d: vec![d; lcp.size()],
-        // The t that makes a response of size 1 in the rows that the load increment moves most.
+        // The t that balances a response of natural size in the rows that the load increment moves most.
         p_per_force: if d > 0.0 { row / d } else { 1.0 },
         // t itself never blocks: it is watched by its target.
         p: 0.0,

@@ -222,8 +222,8 @@ impl PivotState {
     }
 
     /// The candidates at the smallest ratio, and that ratio: rows that fall when the variable of column c grows.
-    /// `to_zero`: p is to fall to zero and blocks there, and so does the other reserve of a slipping couple where e ≤ 0
-    /// does not keep it ≥ 0 by construction; the textbook rules stumble over it.
+    /// `to_zero`: p is to fall to zero and blocks there, and so does the other reserve of a slipping couple whose e ≤
+    /// 0, for then nothing keeps it ≥ 0 by construction; the textbook rules stumble over it.
     pub(crate) fn blocking(&mut self, c: usize, to_zero: bool) -> (Vec<Candidate>, f64) {
         let mut ratios = std::mem::take(&mut self.ratios);
         self.ratios_of_rows(c, &mut ratios);

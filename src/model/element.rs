@@ -60,7 +60,7 @@ pub enum ElementKind {
         thickness: f64,
         /// Stress state.
         plane: Plane,
-        /// Whether a membrane of four nodes has modes of its own beside those of its nodes, so that it bends freely.
+        /// Whether a membrane of four nodes has modes of its own besides those of its nodes, so that it bends freely.
         incompatible: bool,
     },
     /// Two-node frame element in space, `nodes` = [start, end].
@@ -83,7 +83,8 @@ pub enum ElementKind {
     /// Tetrahedron of 4 or 10 nodes, hexahedron of 8 or 20, in the order of
     /// [`shape_functions`](super::shape_functions).
     Solid {
-        /// Whether a hexahedron of eight nodes has modes of its own beside those of its nodes, so that it bends freely.
+        /// Whether a hexahedron of eight nodes has modes of its own besides those of its nodes, so that it bends
+        /// freely.
         incompatible: bool,
     },
 }
@@ -197,7 +198,7 @@ impl Element {
     }
 
     /// The borders over which neighbours move with it: sides of bars and areas, faces of solids, as corner nodes in
-    /// increasing order, `usize::MAX` behind the last.
+    /// increasing order, `usize::MAX` after the last.
     pub fn borders(&self) -> impl Iterator<Item = [usize; 4]> {
         let border = |nodes: &[usize]| {
             let mut border = [usize::MAX; 4];

@@ -16,7 +16,7 @@ pub enum Load {
         /// (M_x, M_y, M_z), in the plane M_z alone; not zero only at nodes with a rotation.
         moment: [f64; 3],
     },
-    /// What acts on an element beside its nodes; the element makes nodal forces of it.
+    /// What acts on an element apart from its nodes; the element makes nodal forces of it.
     Element {
         /// Index into [`Structure::elements`](super::structure::Structure::elements).
         element: usize,
@@ -34,7 +34,7 @@ pub enum Load {
     },
 }
 
-/// What acts on an element, beside its nodes.
+/// What acts on an element, apart from its nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ElementLoad {
     /// Force per unit length of a frame or truss element, linear along it, global axes.

@@ -96,7 +96,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// Whether its structure lies, or its pairs slip, as in the plane or as in space.
+    /// The plane or space: in which its structure lies, or its pairs slip.
     pub fn dimension(&self) -> Dimension {
         match self {
             Source::Structure(structure) => structure.dimension,

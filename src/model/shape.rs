@@ -1,14 +1,14 @@
 //! Shapes of elements: how many nodes, whether they enclose an area, how good they are.
 //!
-//! A quadratic element is the one with straight sides and the bulges of its sides: with d_k = m_k − (c_k + c_k+1)/2
+//! A quadratic element is the one with straight sides plus the bulges of its sides: with d_k = m_k − (c_k + c_k+1)/2
 //!
 //! ```text
 //!     x = Σ N_k c_k + Σ 4 L_i L_j d_k                        triangles
 //!     x = Σ N_k c_k + 4 s(1 − s)(1 − t) d_1 + …              quadrilaterals (serendipity)
 //! ```
 
-/// Shape of an element. The nodes of a line or an area go round, corners first, then the middles of the sides 1-2, 2-3
-/// …; those of a solid are in the order of [`shape_functions`](super::shape_functions).
+/// Shape of an element. The nodes of a line or an area go round, corners first, then the middles of the sides 1-2,
+/// 2-3 …; those of a solid are in the order of [`shape_functions`](super::shape_functions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// Straight line.
@@ -173,7 +173,7 @@ impl Shape {
         is_negative(self.places().map(|[s, t]| self.sign_of_jacobian(nodes, s, t)))
     }
 
-    /// Where the Jacobian is looked at: a grid that holds the nodes, and the integration points of the quadrilateral
+    /// Where the Jacobian is evaluated: a grid that holds the nodes, and the integration points of the quadrilateral
     /// and of the triangle.
     fn places(self) -> impl Iterator<Item = Point> {
         const STEPS: usize = 8;

@@ -108,7 +108,7 @@ fn sides_at([a, b, c]: [[f64; 3]; 3], corner: usize) -> [[f64; 3]; 3] {
     }
 }
 
-/// Where the Jacobian is looked at: a grid that holds the nodes, and the integration points.
+/// Where the Jacobian is evaluated: a grid that holds the nodes, and the integration points.
 fn places(functions: SolidShape) -> Vec<[f64; 3]> {
     const STEPS: i32 = 4;
     if functions == SolidShape::Tetrahedron4 {

@@ -78,7 +78,7 @@ pub struct Structure {
     pub bricks: Vec<Brick>,
     /// The meshes.
     pub meshes: Vec<MeshElements>,
-    /// Id and index of every element that the author named by itself: triangles and quads, in increasing order.
+    /// Id and index of every element that the author named individually: triangles and quads, in increasing order.
     pub named_elements: Vec<(String, usize)>,
     /// Held components, without repetition.
     pub supports: Vec<Support>,

@@ -177,7 +177,7 @@ impl Superelement {
         if largest > 0.0 {
             forces /= largest;
         }
-        // Motions that move no displacement at all are none.
+        // Motions that move no displacement at all do not count.
         let moves = DMatrix::from_fn(rows.len(), count, |i, c| rigid[i][c]);
         for (k, idle) in small_directions(moves, NEARLY).into_iter().enumerate() {
             for c in 0..count {

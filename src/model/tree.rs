@@ -49,7 +49,7 @@ pub enum Kind {
 struct Cell {
     /// Byte offset in the text.
     start: u32,
-    /// Number of the cell behind this value and all that is in it.
+    /// Number of the cell after this value and all that is in it.
     next: u32,
     /// Entries of an object or a list, bytes of anything else.
     extent: u32,
@@ -199,7 +199,7 @@ impl<'d> Node<'d> {
         }
     }
 
-    /// Whether a string is written without escapes, so that its characters stand one by one behind the quotation mark.
+    /// Whether a string is written without escapes, so that its characters stand one by one after the quotation mark.
     pub fn is_written_plainly(self) -> bool {
         self.as_str().is_some_and(|says| says.len() + 2 == self.cell().extent as usize)
     }
@@ -228,7 +228,7 @@ impl<'d> Node<'d> {
         Entries { next: Node { at: self.at + 1, ..self }, left, keyed: kind == Kind::Object }
     }
 
-    /// The value behind a key.
+    /// The value that follows a key.
     pub fn value(self) -> Node<'d> {
         Node { at: self.at + 1, ..self }
     }

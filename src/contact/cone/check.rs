@@ -92,7 +92,7 @@ fn check_pair(problem: &ConeProblem, i: usize, z: &DVector<f64>, forces: &[Sum])
     if slipped > 0.0 {
         let all = problem.share(&problem.slip(i, z), forces);
         check.complementarity = check.complementarity.max(reserve.share().abs().min(all));
-        // The part of the force that is not against the slip, beside all that the row is summed from.
+        // The part of the force that is not against the slip, relative to all that the row is summed from.
         let along = slip.map(|slip| slip / slipped);
         let with = (force[0] * along[0] + force[1] * along[1]).max(0.0);
         let beside = (force[0] * along[1] - force[1] * along[0]).abs();

@@ -228,8 +228,8 @@ impl ConeProblem<'_> {
         values.into_iter().zip(terms).map(|(value, magnitude)| Sum { value, magnitude }).collect()
     }
 
-    /// What share of any force depends on displacements `moved` of some joints: max over the rows of |R moved| / Σ
-    /// |terms|. Where no force feels them it is 1: nothing says that they are rounding.
+    /// What share of any force depends on displacements `moved` of some joints: max over the rows of
+    /// |R moved| / Σ |terms|. Where no force feels them it is 1: nothing says that they are rounding.
     fn share(&self, moved: &[(usize, f64)], forces: &[Sum]) -> f64 {
         let mut felt = false;
         let mut share = 0.0_f64;
@@ -301,8 +301,8 @@ impl ConeProblem<'_> {
     }
 }
 
-/// A displacement and the part of it that strains the structure: however large a motion of the kernel is, λ = R·bending
-/// + load is known to the digits of its own terms.
+/// A displacement and the part of it that strains the structure: however large a motion of the kernel is,
+/// λ = R·bending + load is known to the digits of its own terms.
 #[derive(Clone, Debug)]
 struct Point {
     z: DVector<f64>,

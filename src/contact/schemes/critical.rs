@@ -27,7 +27,7 @@ const NO_COUPLING: f64 = 256.0 * f64::EPSILON;
 /// Imaginary part, relative, up to which an eigenvalue counts as real before its root is looked for.
 const REAL: f64 = 1e-5;
 
-/// How the choices of states were gone through.
+/// How the choices of states were searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coverage {
     /// All of them.

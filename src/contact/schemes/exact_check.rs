@@ -1,11 +1,11 @@
 //! A working scheme proved or refuted in exact arithmetic.
 //!
 //! The f64 data R, RF, f, c, g are rationals; of a contact system from a file they are those of the file, the released
-//! tangential joints of its frictionless pairs among them. The linear equations of the scheme (x_n = 0 where open, x^±
-//! = 0 where slipping, in space x^k = 0 of one facet or two) are solved exactly and the sign of every other quantity is
-//! determined exactly. The directions d_k of the polygon are the f64 numbers that they are stored as. The check judges
-//! the data as they are stored: a structure whose loads are exactly at a limit on paper need not be so after rounding
-//! to f64.
+//! tangential joints of its frictionless pairs among them. The linear equations of the scheme (x_n = 0 where open,
+//! x^± = 0 where slipping, in space x^k = 0 of one facet or two) are solved exactly and the sign of every other
+//! quantity is determined exactly. The directions d_k of the polygon are the f64 numbers that they are stored as. The
+//! check judges the data as they are stored: a structure whose loads are exactly at a limit on paper need not be so
+//! after rounding to f64.
 
 use std::cmp::Ordering;
 use std::ops::ControlFlow;

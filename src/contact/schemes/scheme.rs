@@ -78,7 +78,7 @@ impl Tangential {
     pub fn conditions(self, polygon: Polygon) -> Conditions {
         let reserves = self.facets(polygon);
         let half = polygon.half();
-        // d_k × z_τ ≥ 0, told by the form of the facet or of its mirror.
+        // d_k × z_τ ≥ 0, as the form of the facet or of its mirror shows.
         let turned = |facet: usize, up: bool| {
             let facet = facet % polygon.facets();
             if facet < half { (facet, up) } else { (facet - half, !up) }

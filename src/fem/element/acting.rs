@@ -2,7 +2,7 @@
 
 use crate::model::structure::ElementLoad;
 
-/// What acts on one element beside its nodes, each load with its factor.
+/// What acts on one element apart from its nodes, each load with its factor.
 pub type Acting<'a> = [(f64, &'a ElementLoad)];
 
 /// α ΔT of what acts.

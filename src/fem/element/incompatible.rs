@@ -1,6 +1,6 @@
 //! Incompatible modes of the four-node membrane, 1 − ξ² and 1 − η², and of the brick of eight nodes, with 1 − ζ² more,
-//! beside the functions of their nodes, so that they bend as a beam does. They belong to the element alone and are
-//! eliminated in it.
+//! in addition to the functions of their nodes, so that they bend as a beam does. They belong to the element alone and
+//! are eliminated in it.
 //!
 //! ```text
 //!     k = k_uu − k_uα k_αα⁻¹ k_αu,     α = −k_αα⁻¹ k_αu u
@@ -98,8 +98,8 @@ mod tests {
     }
 
     /// A rectangle a × b bent by κ: u = −κ x y, v = κ x²/2 + ν κ y²/2 has the energy E I κ² a, I = t b³/12; a plain
-    /// element is too stiff by (1/(1 + ν)) (1/(1 − ν) + (a/b)²/2) (Cook, *Concepts and Applications*, §6.6). σ_x = −E κ
-    /// y.
+    /// element is too stiff by (1/(1 + ν)) (1/(1 − ν) + (a/b)²/2) (Cook, *Concepts and Applications*, §6.6).
+    /// σ_x = −E κ y.
     #[test]
     fn a_rectangle_bends_as_a_beam() {
         let (a, b, kappa, nu) = (2.0, 0.5, 0.01, 0.3);

@@ -29,7 +29,7 @@ pub struct Membrane<'a> {
     pub plane: Plane,
     /// Thickness out of the plane.
     pub thickness: f64,
-    /// Whether four nodes have incompatible modes beside their functions.
+    /// Whether an element of four nodes has incompatible modes besides the functions of its nodes.
     pub incompatible: bool,
 }
 
@@ -59,8 +59,8 @@ impl Membrane<'_> {
         Some(self.stiffness_of_all()?.resize(rows, rows, T::zero()))
     }
 
-    /// The same with the rows of the incompatible modes behind those of the nodes, each as it was when it was
-    /// eliminated (the last one first).
+    /// The same with the rows of the incompatible modes after those of the nodes, each as it was when it was eliminated
+    /// (the last one first).
     fn stiffness_of_all<T: Real>(&self) -> Option<Stiffness<T>> {
         if self.shape().nodes().iter().any(|&at| self.gradients::<f64>(at).1 <= 0.0) {
             return None;

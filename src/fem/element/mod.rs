@@ -30,7 +30,7 @@ use crate::model::structure::{Component, Element, ElementKind, Spring, Structure
 /// A row of an element's stiffness: node and component.
 pub type Slot = (usize, Component);
 
-/// The finite element behind element number `index`.
+/// The finite element of element number `index`.
 ///
 /// # Errors
 /// What is wrong with its shape, in words that follow its name.

@@ -173,7 +173,7 @@ struct Update {
     rows: Range<usize>,
 }
 
-/// What a thread keeps beside the factor.
+/// What a thread keeps besides the factor.
 struct Scratch {
     /// Number of a row in the block at hand.
     local: Vec<u32>,

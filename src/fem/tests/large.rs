@@ -45,7 +45,7 @@ fn restricted_condensation_equals_block_solve() {
 }
 
 /// R to the last bit on one thread and on several. The long low plates have their interface among the other unknowns,
-/// the high ones behind them; both have branches and a crown.
+/// the high ones after them; both have branches and a crown.
 #[test]
 fn the_factor_does_not_depend_on_the_number_of_threads() {
     for (size, divisions) in [([30.0, 0.4], [300, 4]), ([4.0, 4.0], [40, 40])] {

@@ -32,7 +32,7 @@ fn structure() -> Structure {
     structure
 }
 
-/// R of every column from K in doubled precision, and the largest difference beside √(R_ii R_jj).
+/// R of every column from K in doubled precision, and the largest difference relative to √(R_ii R_jj).
 fn worst_entry(structure: &Structure, system: &mut MainSystem) -> f64 {
     let plain = system.stiffness().clone();
     let exact = system.refinement(structure, &Quiet).unwrap().stiffness(&Quiet).unwrap().unwrap();

@@ -60,8 +60,8 @@ fn random_programmes_made_infeasible_are_proved_and_feasible_ones_never() {
 
 #[test]
 fn rounding_is_no_proof() {
-    // x − x with entries that f64 cannot hold: 0.1 + 0.2 − 0.3 = 5.6e-17 > 0 exactly, so z is feasible for a tiny q <
-    // 0.
+    // x − x with entries that f64 cannot hold: 0.1 + 0.2 − 0.3 = 5.6e-17 > 0 exactly, so z is feasible for a tiny
+    // q < 0.
     let q = [-1.0, 0.0];
     assert_eq!(of(2, &[0.1 + 0.2 - 0.3, 0.0, 0.0, 1.0], &q), None);
     // And exactly zero is a proof.

@@ -251,7 +251,7 @@ impl Engine for Exact<'_> {
             match self.tableau.step() {
                 Step::Pivoted => return Step::Pivoted,
                 Step::Ended(Outcome::Breakdown(why)) => {
-                    // A sign that could not be told.
+                    // A sign that could not be determined.
                     if !self.refine() {
                         if self.watch.stop() {
                             break Outcome::Interrupted;

@@ -40,12 +40,12 @@ pub trait Scalar: Clone + Debug {
     fn div(&self, other: &Self) -> Self;
     /// −`self`.
     fn neg(&self) -> Self;
-    /// Sign against zero; `None` when it cannot be told (NaN, too little precision).
+    /// Sign against zero; `None` when it cannot be determined (NaN, too little precision).
     fn sign(&self) -> Option<Ordering>;
     /// Whether the type knows no rounding: then zero tests compare with zero, without tolerance.
     fn is_exact() -> bool;
 
-    /// `self` against `other`; `None` when it cannot be told.
+    /// `self` against `other`; `None` when it cannot be determined.
     fn compare(&self, other: &Self) -> Option<Ordering> {
         self.sub(other).sign()
     }

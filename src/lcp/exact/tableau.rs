@@ -35,7 +35,7 @@ const BREAKDOWN: f64 = 1e7;
 #[path = "tableau_choice.rs"]
 mod choice;
 
-/// A sign that could not be told: NaN in f64, too little precision in a ball.
+/// A sign that could not be determined: NaN in f64, too little precision in a ball.
 struct Undecided(Variable);
 
 /// Where a variable stands.

@@ -106,7 +106,7 @@ impl MeshPart {
         groups.iter().find(bounds).or_else(|| groups.iter().find(nodes)).or(groups.first()).copied()
     }
 
-    /// The edge or face that a group is, or why it is none and what to do.
+    /// The edge or face that a group is, or why it is neither and what to do.
     fn border_of(&self, group: &Group) -> Result<Spot, (String, String)> {
         if self.mesh.is_solid() {
             let face = self.surface.face(group).map_err(|fault| self.surface.words(group, &fault))?;
@@ -148,7 +148,7 @@ impl MeshPart {
         None
     }
 
-    /// Whether a group, with members or without, has this name in other letters: then the direction is hardly meant.
+    /// Whether a group has this name up to case, or an empty group has it: then the direction is hardly meant.
     fn is_nearly_a_group(&self, name: &str) -> bool {
         self.mesh.groups.iter().any(|group| group.name.eq_ignore_ascii_case(name))
             || self.mesh.empty_group(name).is_some()
@@ -243,7 +243,7 @@ impl MeshPart {
         (!nodes.is_empty()).then_some(nodes)
     }
 
-    /// The nodes of a group of nodes, of an edge or a face, or of a boundary that is neither; none of bodies.
+    /// The nodes of a group of nodes, of an edge or a face, or of a boundary that makes neither; none of bodies.
     fn nodes_of(&self, group: &Group) -> Vec<usize> {
         if let Members::NodeSet(nodes) | Members::Points(nodes) = &group.members {
             return self.used_of(nodes);

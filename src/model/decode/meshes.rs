@@ -92,7 +92,7 @@ fn read_outline<'d>(
     };
     let materials = fields.required("materials")?;
     let Some(mesh) = mesh else {
-        // Of a file that cannot be read only the values can be looked at.
+        // Where the file cannot be read, only the values can be checked.
         for entry in materials.entries()? {
             let _ = entry.value().entries();
         }

@@ -13,7 +13,7 @@ use crate::model::structure::{Dimension, ElementKind, Structure};
 pub const ELEMENTS: [&str; 9] =
     ["materials", "sections", "nodes", "bars", "plates", "bricks", "meshes", "triangles", "quads"];
 
-/// What needs elements, beside what they are made of.
+/// What needs elements, besides what they are made of.
 const OF_ELEMENTS: [&str; 2] = ["edges", "foundations"];
 
 /// What lies in the plane only.
@@ -85,7 +85,7 @@ pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
     Some(Found { structure: builder.structure, places: builder.places, notes: builder.notes })
 }
 
-/// Refuses elements, and what needs them, beside a superelement.
+/// Refuses elements, and what needs them, together with a superelement.
 fn refuse_elements(fields: &Fields<'_>) {
     let foreign: Vec<&str> = ELEMENTS.into_iter().chain(OF_ELEMENTS).collect();
     fields.refuse(

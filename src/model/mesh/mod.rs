@@ -52,7 +52,7 @@ impl MeshProblem {
     }
 }
 
-/// The problems of a mesh that is looked at by itself.
+/// The problems of a mesh that is examined on its own.
 pub fn as_problems(name: &str, found: Vec<MeshProblem>) -> Problems {
     let problem = |found: MeshProblem| {
         let place = found.place();
@@ -334,7 +334,7 @@ pub fn read(path: &Path, name: &str) -> Result<Mesh, Vec<MeshProblem>> {
     }
 }
 
-/// The bytes behind the mark that some editors put in front of UTF-8.
+/// The bytes after the mark that some editors put in front of UTF-8.
 fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }

@@ -247,7 +247,7 @@ impl<'a> Source<'a> {
         ))
     }
 
-    /// Skips to the end of the line, behind which binary numbers begin.
+    /// Skips to the end of the line, after which binary numbers begin.
     pub fn end_text_line(&mut self) {
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|byte| *byte == b'\n').map_or(rest.len(), |end| end + 1);

@@ -161,7 +161,7 @@ pub enum TemplateError {
 /// The template of a kind.
 ///
 /// # Errors
-/// There is none.
+/// There is no such kind.
 pub fn find(kind: &str) -> Result<&'static Template, TemplateError> {
     ALL.iter().find(|template| template.kind == kind).ok_or_else(|| {
         let kinds: Vec<&str> = ALL.iter().map(|template| template.kind).collect();

@@ -25,7 +25,7 @@ pub struct Solid<'a> {
     pub nodes: Vec<[f64; 3]>,
     /// What it is made of; ν < 0.5.
     pub material: &'a Material,
-    /// Whether eight nodes have incompatible modes beside their functions.
+    /// Whether an element of eight nodes has incompatible modes besides the functions of its nodes.
     pub incompatible: bool,
 }
 
@@ -70,8 +70,8 @@ impl Solid<'_> {
         Some(self.stiffness_of_all()?.resize(rows, rows, T::zero()))
     }
 
-    /// The same with the rows of the incompatible modes behind those of the nodes, each as it was when it was
-    /// eliminated (the last one first).
+    /// The same with the rows of the incompatible modes after those of the nodes, each as it was when it was eliminated
+    /// (the last one first).
     fn stiffness_of_all<T: Real>(&self) -> Option<Stiffness<T>> {
         if self.shape().nodes().iter().any(|&at| self.jacobian::<f64>(at).determinant <= 0.0) {
             return None;

@@ -5,7 +5,7 @@ use super::super::raw::RawMesh;
 use super::super::source::{Form, Item, Source};
 use super::{Groups, Kind, dimension, in_order, kind_of};
 
-/// Counts of a binary section begin behind the line of its name.
+/// Counts of a binary section begin after the line of its name.
 fn begin(source: &mut Source<'_>, item: Item) {
     if source.form != Form::Text {
         source.end_text_line();
