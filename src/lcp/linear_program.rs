@@ -156,8 +156,8 @@ impl LinearProgram {
     }
 
     /// The optimum near `x`, which misses it by about 1/`zoom`: the same program in the magnified difference, so that
-    /// the tolerance of the crate counts for only 1/`zoom` (iterative refinement of linear programs, Gleixner et al.
-    /// 2016). `None` where that gives no point.
+    /// the tolerance of the crate counts for only 1/`zoom` (iterative refinement of linear programs,
+    /// Gleixner et al. 2016). `None` where that gives no point.
     pub fn refined(&self, x: &[f64], zoom: f64, seconds: f64) -> Option<Vec<f64>> {
         let mut near = LinearProgram { cost: self.cost.clone(), ..LinearProgram::default() };
         let rest = |row: &Row| row.rest(x) * zoom;
