@@ -75,7 +75,7 @@ pub struct Attempt {
     pub turn: Option<f64>,
     /// How it ended.
     pub outcome: OutcomeKind,
-    /// Pivots that it made, where that is known; told in words only.
+    /// Pivots that it made, where that is known; shown in words only.
     #[serde(skip)]
     pub pivots: Option<usize>,
     /// Which limit it reached, where that is no ray and no answer; where a path ended.

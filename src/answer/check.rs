@@ -19,9 +19,9 @@ pub const ROUNDING: f64 = 4.0 * NOISE;
 /// some 1e9 belong to a motion that nothing resists: any load at all would pass as rounding beside them.
 pub const HIDDEN: f64 = 1e-4;
 
-/// Checks an answer over the joints, row by row: forces and reserves as shares of the terms they are summed from (loads,
-/// gaps closed by force, R z), displacements as the share of those forces that hangs on them, of a couple the smaller of the two shares.
-/// `equilibrium` is ‖K u − F − Bᵀλ‖ relative, where there is a K.
+/// Checks an answer over the joints, row by row: forces and reserves as shares of the terms they are summed from
+/// (loads, gaps closed by force, R z), displacements as the share of those forces that depends on them, and of a couple
+/// the smaller of the two shares. `equilibrium` is ‖K u − F − Bᵀλ‖ relative, where there is a K.
 pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: Option<f64>) -> Check {
     let system = &*problem.system;
     let forces: Vec<Sum> = (0..system.joint_count()).map(|joint| state.sum(joint)).collect();
@@ -45,13 +45,13 @@ pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: 
         let sums = pair_sums(problem, &forces, (i, state.z[i] > 0.0));
         match sums.normal {
             Some(normal) => couple(normal, state.z[i], share(i, state.z[i].abs())),
-            // Held both ways: what it repeats must leave it at rest.
+            // Held in both directions: the joints that it repeats must leave it at rest.
             None if system.is_forced(i) => couple(Sum::exactly(1.0), state.z[i], share(i, state.z[i].abs())),
             None => {}
         }
         let slips = problem.polygon.slips(state.slip(pair));
         for (facet, (reserve, slip)) in sums.reserves.into_iter().zip(slips).enumerate() {
-            // Beside a facet rounding leaves a slip along its neighbour, on which next to no force hangs.
+            // Next to a facet, rounding leaves a slip along the neighbouring one, on which hardly any force depends.
             let along = pair.tangential.clone().zip(problem.polygon.direction(facet));
             let hangs = along.map(|(joint, d)| share(joint, (slip * d).abs())).fold(0.0, f64::max);
             couple(reserve, slip, hangs);

@@ -5,9 +5,9 @@ use crate::doubled::Sum;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::NOISE;
 
-/// Checks z ≥ 0, w = M z + q ≥ 0 and w_i = 0 where z_i > 0. Every w_i is judged against the sum of the magnitudes of its
-/// own terms, so that no row hides behind the size of another one; z_i has no terms and must not be negative at all.
-/// `tolerance`: what of that sum is rounding, [`NOISE`] for an answer that is one.
+/// Checks z ≥ 0, w = M z + q ≥ 0 and w_i = 0 where z_i > 0. Every w_i is judged against the sum of the magnitudes of
+/// its own terms, so that no row hides behind the size of another one; z_i has no terms and must not be negative at
+/// all. `tolerance`: the share of that sum that passes as rounding, [`ROUNDING`] for an answer that is not marginal.
 pub fn check_plain(lcp: &MirroredLcp, z: &[f64], tolerance: f64) -> Check {
     let length = z.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
     let mut check = Check::default();

@@ -22,7 +22,7 @@ pub struct JointState {
     pub force: DVector<f64>,
     /// Sum of the magnitudes of the terms of each λ.
     pub terms: DVector<f64>,
-    /// The same of the z of joints in force form; 0 for the others, whose z is the unknown.
+    /// The same for the z of joints in force form; 0 for the others, whose z is the unknown.
     pub z_terms: DVector<f64>,
     /// What the equations of a file leave over; see [`StateForces`].
     pub left: Vec<Sum>,
@@ -34,7 +34,7 @@ pub struct JointState {
     pub on_cone: bool,
 }
 
-/// What a force in force form is known to a few ε of: the sums it goes into, each as far as it feels it.
+/// A force in force form is known to a few ε of this: the sums that it enters, weighted by its part in each.
 fn known_to(system: &ContactSystem, responses: &[Sum], joint: usize) -> f64 {
     let column = system.stiffness.column(joint);
     let any_force = (0..column.len()).any(|i| column[i] != 0.0 && !system.is_forced(i));
@@ -46,7 +46,7 @@ fn known_to(system: &ContactSystem, responses: &[Sum], joint: usize) -> f64 {
 }
 
 impl JointState {
-    /// The state of displacements z, those that are rounding set to 0. For joints in force form forces stand in `z`.
+    /// The state of displacements z, with those that are rounding set to 0. For joints in force form, `z` holds forces.
     pub fn at(problem: &ContactProblem, mut z: DVector<f64>, p: f64) -> JointState {
         let system = &*problem.system;
         let mut forces = state_forces(problem, &z);
@@ -131,7 +131,7 @@ impl JointState {
         self.against_file(problem)
     }
 
-    /// The unknowns and what answers to them, in the forms that the joints have: z and λ, of joints in force form λ and z.
+    /// The unknowns and their counterparts: z and λ, for joints in force form λ and z.
     pub fn in_forms(&self, system: &ContactSystem) -> (DVector<f64>, Vec<Sum>) {
         let (mut unknowns, mut responses) = (self.z.clone(), Vec::with_capacity(self.z.len()));
         for joint in 0..self.z.len() {
@@ -233,7 +233,7 @@ fn pair_state(
                 (false, false) => 0.0,
             };
             if at_limit != 0.0 && f > 0.0 && f * x_n.magnitude > raw.magnitude {
-                // At the limit x_n and x_τ tell each other: the one that is known worse follows.
+                // At the limit x_n and x_τ determine each other: the less accurate one follows.
                 let follows = ((at_limit * raw.value - constant) / f).max(0.0);
                 let change = Sum { value: follows - x_n.value, magnitude: x_n.magnitude };
                 if change.is_zero() {

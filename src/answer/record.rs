@@ -37,7 +37,7 @@ pub struct Turned {
     pub to: String,
 }
 
-/// One pivot as told to the user.
+/// One pivot as shown to the user.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PivotRecord {
     /// 0 is the entry of p.
@@ -56,19 +56,19 @@ pub struct PivotRecord {
     pub sentence: String,
 }
 
-/// Fresh check of an answer from R, RF, f and K: numbers without unit. A force or reserve is measured by the magnitudes of
-/// the terms that it was summed from, a displacement by the share of the forces that hangs on it.
+/// Fresh check of an answer from R, RF, f and K: numbers without unit. A force or reserve is measured by the magnitudes
+/// of the terms that it was summed from, a displacement by the share of the forces that depends on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Check {
     /// Smallest contact force or reserve; ≥ 0 but for rounding in an answer.
     pub min_w: f64,
     /// Smallest opening, z⁺ or z⁻; likewise.
     pub min_z: f64,
-    /// Of every couple the smaller of w_i and z_i, the largest of all; of a bare LCP w where z > 0.
+    /// The smaller of w_i and z_i of a couple, the largest of all couples; for a bare LCP, w where z > 0.
     pub complementarity: f64,
-    /// Largest |K u − F − Bᵀλ| beside the forces that meet at its node; `None` where there is no K.
+    /// Largest |K u − F − Bᵀλ| relative to the forces that meet at its node; `None` where there is no K.
     pub equilibrium: Option<f64>,
-    /// What rounding hides of the forces, as a share of the loads; told where a check fails for it.
+    /// What rounding hides of the forces, as a share of the loads; given where a check fails because of it.
     #[serde(skip)]
     pub hidden: f64,
     /// Whether only the joints were examined so far: displacements and the equilibrium of the structure are still to come.
@@ -306,11 +306,11 @@ pub enum Start {
 pub struct Answer {
     /// How it ended.
     pub outcome: OutcomeKind,
-    /// Normal, but p stopped within 1e-12 of largest |q|.
+    /// Normal, but p stopped below 1e-12 of the largest |q|.
     pub marginal: bool,
     /// Where the run ended in a ray.
     pub ray: Option<Ray>,
-    /// p at the end, a force in the user's unit; 0 of an answer.
+    /// p at the end, a force in the user's unit; 0 in an answer.
     pub p: f64,
     /// Rules of the last attempt.
     pub rules: AttemptRules,
@@ -318,7 +318,7 @@ pub struct Answer {
     pub polygon: Option<PolygonRecord>,
     /// All tries, in order.
     pub attempts: Vec<Attempt>,
-    /// The pivots of the last attempt: the first ones only where the run was very long.
+    /// The pivots of the last attempt; only the first ones of a very long run.
     pub pivots: Vec<PivotRecord>,
     /// Number of all its pivots.
     pub pivot_count: usize,

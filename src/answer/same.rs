@@ -2,8 +2,8 @@
 
 use super::record::{Answer, PairState};
 
-/// Values may differ by this share of the largest of their kind: an answer passes its check with violations of some 1e-9
-/// of its terms, which the condition of its scheme enlarges.
+/// Values may differ by this share of the largest of their kind: an answer passes its check with violations of some
+/// 1e-9 of its terms, which the condition number of its scheme magnifies.
 const SAME: f64 = 1e-7;
 
 /// Whether numbers of one kind are the same, as shares of the largest of them.
@@ -12,8 +12,8 @@ fn near(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME * size)
 }
 
-/// Whether two lists of pairs have the same forces and displacements, each by their own size. A pair on a limit may be told
-/// either way, so the states in words are not compared.
+/// Whether two lists of pairs have the same forces and displacements, each by their own size. A pair on a limit may be
+/// classified either way, so the states in words are not compared.
 pub fn same_pairs(a: &[PairState], b: &[PairState]) -> bool {
     let values =
         |pairs: &[PairState], pick: fn(&PairState) -> [f64; 2]| -> Vec<f64> { pairs.iter().flat_map(pick).collect() };

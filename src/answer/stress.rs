@@ -87,7 +87,8 @@ impl Serialize for Stress {
 mod tests {
     use super::*;
 
-    /// Pure shears in all three planes: principal values 2τ, −τ, −τ and von Mises 3τ; pressed evenly, none of the last.
+    /// Pure shears in all three planes: principal values 2τ, −τ, −τ and von Mises 3τ; under even pressure von Mises is
+    /// 0.
     #[test]
     fn a_stress_in_space() {
         let at = || StressPlace::Node("n".to_owned());

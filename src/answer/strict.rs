@@ -6,16 +6,16 @@ use crate::contact::sum::Sum;
 use crate::contact::sums::{displacement_share, pair_sums};
 use crate::contact::unique::is_determined;
 
-/// A force, a reserve or a displacement is clear of zero above this share of its terms: far above what rounding does to the
-/// decisions of an engine, which takes less than 1e-14 for zero.
+/// A force, a reserve or a displacement is clear of zero above this share of its terms: far above the rounding that may
+/// sway an engine, which takes less than 1e-14 for zero.
 const CLEAR: f64 = 1e-7;
 
-/// Whether of each couple one member is clear of zero, so that one scheme alone has this state, and whether no motion of the
-/// kernel is left to what is not held. Where the forces are the only ones, such a state is the only one.
+/// Whether one member of each couple is clear of zero, so that only one scheme has this state, and whether the joints
+/// that are held leave no motion of the kernel free. Where the forces are unique, such a state is unique.
 pub fn is_strict(problem: &ContactProblem, state: &JointState) -> bool {
     let system = &*problem.system;
     if system.is_in_space() {
-        // Of a slip that may turn nothing is examined.
+        // A slip that may turn is not examined.
         return false;
     }
     let forces: Vec<Sum> = (0..system.joint_count()).map(|joint| state.sum(joint)).collect();

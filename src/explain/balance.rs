@@ -16,7 +16,7 @@ const ZOOM: f64 = 1e6;
 
 /// Work left over, per unit of load and motion, that the linear program cannot tell from 0 without a closer look.
 const UNCLEAR: f64 = 1e-5;
-/// And with it.
+/// The same with the closer look.
 const BALANCED: f64 = 1e-11;
 
 /// What is known of the multiples α of a load for which there are balanced forces.
@@ -131,7 +131,7 @@ pub fn is_balanced(problem: &ContactProblem, motions: &FreeMotions, seconds: f64
         return Some(true);
     }
     // The least work that is left over on all motions together: a program that always has an optimum, unlike the
-    // question itself, which next to a limit has no room for an answer.
+    // question itself, which has no room for an answer next to a limit.
     let Forces { mut program, balance } = forces(problem, motions, size);
     let mut left_over = Vec::new();
     for (mut row, work) in balance.into_iter().zip(motions.work(&load, &terms)) {

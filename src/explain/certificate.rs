@@ -6,15 +6,14 @@
 //!   none  ⇔  a motion ζ with  ζ_n ≥ f |ζ_τ|  in every pair and  work of the loads > Σ c |ζ_τ|
 //! ```
 //! The second line is the Farkas alternative: on ζ every admissible λ takes at most Σ c |ζ_τ|, and the loads do more.
-//! In space |ζ_τ| is the length of a vector and the program has cones: what it proves holds for Coulomb's law itself, no
-//! polygon in its place.
+//! In space |ζ_τ| is the length of a vector and the program has cones: what it proves holds for Coulomb's law itself,
+//! not for a polygon in its place.
 //!
 //! The motion looked for is the one with the largest least margin: the signs of such a motion have room, so that f64
-//! sums with the bounds of their rounding prove them (method §4, "Rays"). Where a part is confined
-//! on both sides no motion has room everywhere: then the inequalities that must hold as equations are found, solved in
-//! rationals, and every sign that has no room is evaluated exactly. A program only *proposes*; no verified
-//! motion, no certificate. Of a system that a file gives, the motions are exact, and so is a last linear program
-//! ([`super::exact_certificate`]).
+//! sums with the bounds of their rounding prove them (method §4, "Rays"). Where a part is confined on both sides no
+//! motion has room everywhere: then the inequalities that must hold as equations are found, solved in rationals, and
+//! every sign that has no room is evaluated exactly. A program only *proposes*; no verified motion, no certificate. For
+//! a system that a file gives, the motions are exact, and so is a last linear program ([`super::exact_certificate`]).
 
 use std::time::Instant;
 
@@ -57,7 +56,7 @@ pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSe
     CertificateSearch { out_of_time: found.out_of_time || exactly.out_of_time, ..exactly }
 }
 
-/// The certificate if these amounts of the motions, found of other loads or other friction, are one here, too.
+/// The certificate if these amounts of the motions, found for other loads or other friction, are one here, too.
 pub fn certify_again(problem: &ContactProblem, motions: &FreeMotions, amounts: &[f64]) -> Option<Certificate> {
     if amounts.len() != motions.count() {
         return None;
@@ -83,8 +82,8 @@ impl Load<'_> {
     }
 }
 
-/// Looks until `end` for a motion that f64 sums prove, and where it has no room for one that rationals do: what is proved
-/// hangs on the motions, the load and the laws alone.
+/// Looks until `end` for a motion that f64 sums prove or, where it has no room, rationals: what is proved depends on
+/// the motions, the load and the laws alone.
 pub fn certify_pairs(pairs: &[ConePair], motions: &FreeMotions, load: Load, end: Instant) -> CertificateSearch {
     let Some(mut program) = MotionProgram::new(pairs, motions, load, end) else { return CertificateSearch::default() };
     let certificate = program.with_room().or_else(|| program.confined());
@@ -104,7 +103,7 @@ struct Slack {
 }
 
 impl Slack {
-    /// Demands it with so much room.
+    /// Demands it with this room.
     fn demand(&self, program: &mut LinearProgram, room: Option<usize>) {
         let most: Terms = self.most.iter().copied().chain(room.map(|room| (room, -1.0))).collect();
         program.at_least_length(&most, &self.parts);
@@ -281,7 +280,7 @@ impl<'a> MotionProgram<'a> {
         self.proof(&x, &tight)
     }
 
-    /// The certificate if these amounts, put right where inequalities must hold as equations, are one.
+    /// The certificate if these amounts, corrected where inequalities must hold as equations, are one.
     fn proof(&mut self, x: &[f64], tight: &[&Slack]) -> Option<Certificate> {
         let mut amounts = x[..self.motions.count()].to_vec();
         let mut equations = Equations::new(amounts.len(), self.end);
@@ -306,8 +305,8 @@ impl<'a> MotionProgram<'a> {
         self.verified(&amounts, exactly.as_deref())
     }
 
-    /// What an inequality without room demands as the data have it: in the plane an equation, in space that the pair is at
-    /// rest.
+    /// What an inequality without room demands, with the exact numbers of the data: in the plane an equation, in space
+    /// that the pair is at rest.
     fn as_equations(&self, slack: &Slack) -> Vec<Vec<(usize, BigRational)>> {
         let normal = exactly(self.motions.row(slack.pair));
         let Some(sense) = slack.sense else {

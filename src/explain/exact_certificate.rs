@@ -5,8 +5,8 @@
 //!   R ζ = 0,  ζ = Σ y_k motion_k:    ζ_n ± f ζ_τ ≥ 0,   v ≥ |ζ_τ|,   −RF·ζ − Σ c v ≥ 1
 //! ```
 //! An exact linear program over y and v; a point of it is the certificate, and where it has none there are contact
-//! forces that balance the loads. In space the friction of a pair lies in a polygon around the disk |x_τ| ≤ f x_n + c: what
-//! is proved for the polygon holds for the disk, and between the two nothing is.
+//! forces that balance the loads. In space the friction of a pair lies in a polygon around the disk |x_τ| ≤ f x_n + c:
+//! what is proved for the polygon holds for the disk, and between the two nothing is proved.
 
 use std::time::Instant;
 

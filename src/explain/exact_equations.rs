@@ -8,7 +8,7 @@ use num_traits::Zero;
 
 use crate::lcp::exact::dyadic::{nearest, rational};
 
-/// The free unknowns are rounded to this: short numbers stay short.
+/// The free unknowns are rounded to multiples of 1/GRID: short numbers stay short.
 const GRID: f64 = (1u64 << 40) as f64;
 
 type Row = BTreeMap<usize, BigRational>;
@@ -31,7 +31,7 @@ pub enum Solved {
 }
 
 impl Equations {
-    /// None yet, for so many unknowns, to be solved before `end`.
+    /// No equations yet, for this many unknowns, to be solved before `end`.
     pub fn new(unknowns: usize, end: Instant) -> Equations {
         Equations { rows: Vec::new(), unknowns, end }
     }

@@ -25,8 +25,8 @@ pub fn releasable_kernel(system: &ContactSystem) -> DMatrix<f64> {
     if free.is_empty() { DMatrix::zeros(kernel.nrows(), 0) } else { DMatrix::from_columns(&free) }
 }
 
-/// Without entries that are rounding noise beside the largest of their column: they would only blur motions that are
-/// exactly simple.
+/// The kernel without entries that are rounding noise beside the largest of their column: they would only blur motions
+/// that are exactly simple.
 pub fn clean(kernel: &DMatrix<f64>) -> DMatrix<f64> {
     let mut clean = kernel.clone();
     for mut column in clean.column_iter_mut() {

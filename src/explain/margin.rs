@@ -156,7 +156,7 @@ pub fn load_margin(
         let value = if value <= AT_LIMIT * size { 0.0 } else { value };
         let step = value / rate;
         let at = present - step;
-        // A difference of equals is not a factor of 1e-15.
+        // A difference of equal numbers is 0, not a factor of 1e-15.
         let at = if at.abs() <= 1e-12 * present.abs().max(step.abs()) { 0.0 } else { at };
         let own = what(scheme, variable).0 == pair;
         let sooner = |slot: &mut Option<Turn>, up: bool| {

@@ -26,7 +26,7 @@ const TIGHT: f64 = 1e-6;
 pub struct Misfit {
     /// The pairs that cannot all be closed or open, those that s presses.
     pub pairs: Vec<usize>,
-    /// sᵀ_n g + sᵀ h with the largest s_n = 1: by so much they overlap, < 0.
+    /// sᵀ_n g + sᵀ h with the largest s_n = 1: minus the overlap, < 0.
     pub room: f64,
 }
 

@@ -186,7 +186,7 @@ fn part_name(names: &[String], all: usize) -> String {
     }
 }
 
-/// More ways of slip than this are not told one by one.
+/// More ways of slip than this are not listed one by one.
 const MOST_WAYS: usize = 6;
 
 /// What a direction does to the pairs: "all pairs slip +", `base[0] to base[3] open`.
@@ -210,7 +210,7 @@ pub fn pair_words(system: &ContactSystem, direction: &DVector<f64>) -> Vec<Strin
             None => kinds.push((kind, vec![i])),
         }
     }
-    // a body that turns slips everywhere another way
+    // a body that turns slips in a different direction everywhere
     let ways = |kind: &str| kind.starts_with("slip towards");
     if kinds.iter().filter(|(kind, _)| ways(kind)).count() > MOST_WAYS {
         let (turning, mut rest): (Vec<_>, Vec<_>) = kinds.into_iter().partition(|(kind, _)| ways(kind));

@@ -93,7 +93,7 @@ impl FreeMotions {
         &self.rows[joint]
     }
 
-    /// Displacement of a joint under so much of each motion.
+    /// Displacement of a joint under these amounts of the motions.
     pub fn displacement(&self, joint: usize, amounts: &[f64]) -> Sum {
         let mut sum = Sum::default();
         for entry in &self.rows[joint] {
@@ -102,7 +102,7 @@ impl FreeMotions {
         sum
     }
 
-    /// Displacements of all joints by so much of each motion.
+    /// Displacements of all joints under these amounts of the motions.
     pub fn displacements(&self, amounts: &[f64]) -> DVector<f64> {
         DVector::from_fn(self.rows.len(), |joint, _| self.displacement(joint, amounts).value)
     }

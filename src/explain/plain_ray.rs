@@ -105,7 +105,7 @@ impl PlainRay {
     }
 }
 
-/// What a bimatrix game has for an answer; told where that failed.
+/// What the answer of a bimatrix game is; said where it was not found.
 const GAME: &str = " This is a bimatrix game with M = [0 A; C 0]. With the players' values u and v as unknowns, rows A y - u e, \
                     C x - v e, eᵀx - 1, eᵀy - 1 for z = (x, y, u, v), Lemke's algorithm ends in an equilibrium where A, C > 0; \
                     it is an answer here only where u and v are > 0.";

@@ -16,9 +16,9 @@ pub struct PlainWhy {
     pub variable: String,
     /// Its value.
     pub value: f64,
-    /// Its complement, and the value of that.
+    /// Its complement.
     pub complement: String,
-    /// See there.
+    /// The value of the complement.
     pub complement_value: f64,
     /// What holds it there, in a sentence.
     pub cause: String,
@@ -68,7 +68,7 @@ impl Vertex<'_> {
             (false, true, 'z') => format!("{complement} = {} > 0: the row is met without it", short(other)),
             (false, true, _) => format!("{complement} = {} > 0 holds it at zero", short(other)),
             (false, false, _) => format!("it and {complement} are both zero: a degenerate couple"),
-            // Of the couple that waits to enter while p > 0 both are zero; of no couple are both positive.
+            // In the couple that waits to enter while p > 0, both are zero; in no couple are both positive.
             (true, true, _) => format!("{complement} = {} too: the couple is not complementary", short(other)),
         };
         let cause = format!("{variable} = {at}: {cause}");

@@ -19,7 +19,7 @@ pub struct Certificate {
     pub dissipation: f64,
     /// Whether some sign had no room and was proved in exact arithmetic.
     pub exact: bool,
-    /// How much of each motion ζ is made of, before it was scaled; empty where it was not made of the motions given.
+    /// The amounts of the given motions that ζ is made of, before it was scaled; empty where it was not made of them.
     pub amounts: Vec<BigRational>,
 }
 

@@ -31,9 +31,9 @@ use crate::watch::Watch;
 const NO_ENERGY: f64 = 1e-7;
 /// A power below this multiple of the terms it sums is rounding.
 const NO_POWER: f64 = NOISE;
-/// Most pairs whose working schemes are gone through beside a solution.
+/// Most pairs whose working schemes are all tried to accompany a solution.
 const MOST_PAIRS: usize = 10;
-/// Steps times the cube of the joints after which that is given up.
+/// Steps times the cube of the number of joints after which that is given up.
 const MOST_STEPS: u64 = 100_000_000;
 
 /// Work of a load case on the mode, per unit of its largest entry.
@@ -60,7 +60,7 @@ pub struct RayReport {
     pub driver: String,
     /// z̄ over the joints, largest entry 1.
     pub direction: DVector<f64>,
-    /// Of an artefact the pair whose slips grow together and cancel: z⁺ and z⁻, in space along several facets.
+    /// For an artefact, the pair whose slips grow together and cancel: z⁺ and z⁻, in space along several facets.
     pub artefact: Option<usize>,
     /// The motion of the structure, where z̄ costs no energy; found by [`explain`].
     pub mode: Option<Mode>,
@@ -358,7 +358,7 @@ impl RayReport {
             Covering::Weight => format!("an extra pressing force p = {p} in every pair"),
             Covering::Ones => format!("an extra p = {p} in every contact force and every reserve"),
         };
-        // In force form p adds to distances too and to some reserves twice: it is not a force that is missing.
+        // In force form p adds to distances too and to some reserves twice: it is not the force that is missing.
         let forced = system.force_form.is_some();
         let mut text = match (self.class == RayClass::Mechanism, forced) {
             _ if self.driver.is_empty() && self.misfit.is_some() => {

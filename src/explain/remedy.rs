@@ -13,7 +13,7 @@ use crate::contact::problem::ContactProblem;
 use crate::text::words::short;
 use crate::watch::{Budget, Watch};
 
-/// Friction (or its multiplier) up to which is looked.
+/// Largest friction (or multiplier of it) that is considered.
 const MOST_FRICTION: f64 = 1e3;
 /// How far inside a limit an answer is tried.
 const INSIDE: f64 = 1e-6;
@@ -211,7 +211,7 @@ impl RemedySearch<'_> {
     }
 }
 
-/// Six digits, trailing zeros dropped: limits are worth more than running text.
+/// Six digits, trailing zeros dropped: limits deserve more than running text.
 pub fn digits(value: f64) -> String {
     rounded(value, 6)
 }
@@ -271,7 +271,7 @@ impl Remedy {
             Remedy::Load { case, present, needed, tried } => {
                 let (threshold, now) = told_apart(*needed, *present);
                 let (word, side) = if present > needed { ("less", "below") } else { ("more", "above") };
-                // Of a load with a negative factor more is further down.
+                // For a negative factor, more of the load is a smaller number.
                 let word = if *present < 0.0 { if word == "less" { "more" } else { "less" } } else { word };
                 RemedyWords {
                     remedy: format!("{word} of load case `{case}` (its factor)"),

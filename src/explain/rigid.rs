@@ -7,7 +7,7 @@ use crate::model::vector::{cross, dot, length, unit, way};
 use crate::text::number::short as number;
 use crate::text::words::short;
 
-/// Shares of the largest displacement below which motions are alike, and rotations none.
+/// Shares of the largest displacement below which motions are alike, and rotations count as none.
 const ALIKE: f64 = 1e-6;
 
 /// A small rigid motion: displacement of the origin, and rotation vector (right-handed, its length the angle).
@@ -59,7 +59,7 @@ impl Fitted {
         near(self.shift, other.shift, 1.0) && near(self.turn, other.turn, extent)
     }
 
-    /// What it is; an axis in space is told by its point nearest to `centre`.
+    /// What it is; an axis in space is given by its point nearest to `centre`.
     pub fn describe(&self, centre: [f64; 3], extent: f64, largest: f64) -> RigidMotion {
         let angle = length(self.turn);
         if angle * extent <= ALIKE * largest {
@@ -127,7 +127,7 @@ impl RigidMotion {
     }
 }
 
-/// `+x`, `-y`, `(0.995, 0.0998)`; in space a level one in degrees, `37° from x to y`.
+/// `+x`, `-y`, `(0.995, 0.0998)`; in space a horizontal one in degrees, `37° from x to y`.
 pub fn direction_word(u: [f64; 3], dimension: Dimension) -> String {
     let Some(u) = unit(u) else { return "nothing".to_owned() };
     let u = u.map(|entry| if entry.abs() <= ALIKE { 0.0 } else { entry });

@@ -1,7 +1,7 @@
 //! The collapse that a certificate on Coulomb's cone stands for.
 //!
-//! On the motion of a certificate every pair that slips parts by f |ζ_τ| or more: the proof needs that. The pair itself stays
-//! closed. So the collapse that is told is the nearest motion without that opening:
+//! On the motion of a certificate every pair that slips parts by f |ζ_τ| or more: the proof needs that. The pair itself
+//! stays closed. So the collapse that is reported is the nearest motion without that opening:
 //!
 //! ```text
 //!     min |z − ζ|   over the motions that cost no energy with  z_n = 0  where  0 < ζ_n ≤ 2 f |ζ_τ|
@@ -16,14 +16,14 @@ use super::mode::STILL;
 use crate::contact::on_cone::widest_cone_pairs;
 use crate::contact::problem::ContactProblem;
 
-/// What parts by no more than so many times f |ζ_τ| parts for the sake of the proof: where the proof has room it is somewhat
-/// more than f |ζ_τ|, and pairs that lift off in truth hardly slip.
+/// A pair that parts by no more than this many times f |ζ_τ| parts for the sake of the proof, which with room takes
+/// somewhat more than f |ζ_τ|; pairs that really lift off hardly slip.
 const FOR_THE_PROOF: f64 = 2.0;
-/// Most motions of which a singular value decomposition is made.
+/// Most motions for which a singular value decomposition is made.
 const MOST_MOTIONS: usize = 240;
 
-/// The motion of a certificate without what only its proof needs, largest entry 1; `None` where there is nothing to take
-/// away, or nothing that still is a collapse is left.
+/// The motion of a certificate without what only its proof needs, largest entry 1; `None` where there is nothing to
+/// take away, or where what is left is no collapse.
 pub fn sliding(problem: &ContactProblem, motion: &DVector<f64>) -> Option<DVector<f64>> {
     let pairs = widest_cone_pairs(problem);
     let kernel = releasable_kernel(&problem.system);

@@ -1,9 +1,10 @@
 //! Before solving: contacts that no load case presses, which is what a normal that points the wrong way looks like.
 //!
 //! What is looked at is the main system, every joint on: a case presses pair i if its RF_n,i > 0 under the sign of its
-//! factor, or −R g does where gaps are interferences. An edge contact is pressed where one of its pairs is; so is a joint
-//! of single pairs between two bodies of plates, quads or triangles. What presses a pair only after others slip or open is not seen; where
-//! nothing reaches the pair itself, but joints that it is coupled to, that may be so, and nothing is said.
+//! factor, or −R g does where gaps are interferences. An edge contact is pressed where one of its pairs is; so is a
+//! joint of single pairs between two bodies of plates, quads or triangles. What presses a pair only after others slip
+//! or open is not seen; where the loads do not reach the pair itself, but joints that it is coupled to, that may
+//! happen, and nothing is said.
 //!
 //! That a contact is pressed can be certain without R and RF: where a motion that costs nothing opens it and moves no
 //! other joint, B u = z and uᵀ (Bᵀ RF + F) = 0 give Σ z_n RF_n = −F·u over its pairs, and at least one of them is > 0
@@ -93,7 +94,7 @@ fn contacts(scenario: &Scenario) -> Vec<Range<usize>> {
     groups.collect()
 }
 
-/// Whether every contact is certain to be pressed, told from the motions of the parts alone; `false` may mean anything.
+/// Whether every contact is certain to be pressed, judged by the motions of the parts alone; `false` may mean anything.
 pub fn surely_pressed(scenario: &Scenario, structure: &Structure, kinematics: &Kinematics) -> bool {
     let motions = kinematics.motions();
     let contacts = contacts(scenario);
@@ -129,7 +130,7 @@ pub fn surely_pressed(scenario: &Scenario, structure: &Structure, kinematics: &K
 fn opening(traces: &DMatrix<f64>, all: &DMatrix<f64>, pairs: Range<usize>) -> Option<DVector<f64>> {
     let own = traces.rows(pairs.start, pairs.len());
     let others = all - own.transpose() * own;
-    // What the other joints hardly feel; that they feel nothing of it is seen below.
+    // What the other joints hardly feel; that they feel nothing of it is checked below.
     let unfelt = 1e-12 * all.trace();
     let eigen = others.symmetric_eigen();
     let free: Vec<_> =
@@ -325,7 +326,7 @@ fn effect(
     if coupled[pair] { Effect::Perhaps } else { Effect::Untouched }
 }
 
-/// For each joint whether it hangs together, through entries of R, with one that a case loads.
+/// For each joint: whether it is connected, through entries of R, with one that a case loads.
 fn coupled(system: &ContactSystem) -> Vec<bool> {
     let (r, k) = (&system.stiffness, system.joint_count());
     let is_loaded =

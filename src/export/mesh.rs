@@ -52,7 +52,7 @@ pub fn overview(name: &str, mesh: &Mesh, overview: &Overview) -> Value {
     object
 }
 
-/// What is measured of something with so many dimensions.
+/// What is measured of something with this many dimensions.
 fn measure_word(dimension: u8) -> &'static str {
     match dimension {
         2 => "area",

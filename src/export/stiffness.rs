@@ -44,7 +44,7 @@ impl Ids {
 }
 
 impl Stiffness<'_> {
-    /// The scenario beside the matrices, and how many pairs it cannot tell: those of edges whose nodes do not match.
+    /// The scenario beside the matrices, and how many pairs it cannot express: those of edges whose nodes do not match.
     /// `file` gives the name of the file of K (`None`) or of a load case.
     pub fn scenario(&self, title: &str, units: &Units, file: &dyn Fn(Option<&str>) -> String) -> (Value, usize) {
         let mut ids = Ids::default();

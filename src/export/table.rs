@@ -49,7 +49,7 @@ impl Table {
     }
 }
 
-/// Each record once for every record of its list `key`, whose fields stand behind its own.
+/// Each record once for every record of its list `key`, whose fields follow its own.
 pub fn unfolded(records: &[Value], key: &str) -> Vec<Value> {
     let with = |outer: &Value, inner: &Value| {
         let (Value::Object(outer), Value::Object(inner)) = (outer, inner) else { return Value::Null };

@@ -1,5 +1,5 @@
-//! A structure with its results for ParaView and other programs: VTK XML, `UnstructuredGrid`, in plain text, numbers
-//! in full precision; `.pvd` collects several states to a series.
+//! A structure with its results for ParaView and other programs: VTK XML, `UnstructuredGrid`, in plain text, numbers in
+//! full precision; `.pvd` collects several states into a series.
 //!
 //! Points are the nodes, then one for each contact pair, at its node. Cells are the elements, then a vertex for each
 //! pair. What does not belong to a point or a cell is 0 there, `contact_state` and `contact_pair` −1.

@@ -31,7 +31,7 @@ const MOST_ROWS: usize = 300;
 /// All answers of a problem.
 #[derive(Clone, Debug)]
 pub struct AllAnswers {
-    /// Each as a solved state without pivots.
+    /// Each answer as a solved state without pivots.
     pub answers: Vec<Solved>,
     /// For each: whether it was proved in exact arithmetic.
     pub exact: Vec<bool>,
@@ -73,7 +73,7 @@ pub enum Moving {
 }
 
 impl AllAnswers {
-    /// There is none: proved.
+    /// Whether it is proved that there is none.
     pub fn none(&self) -> bool {
         self.complete && self.undecided == 0 && self.answers.is_empty()
     }
@@ -112,7 +112,7 @@ impl Prepared {
             watch.go_on()
         });
         if found.no_answer() {
-            // At a limit on paper the numbers as stored may be just beyond it.
+            // At what is a limit on paper, the stored numbers may lie just beyond it.
             let near = self.attempt_contact(&problem, (Rules::default(), Extent::Whole), watch)?;
             if near.answer.is_answer() {
                 return Ok(AllAnswers {
@@ -175,7 +175,7 @@ impl Prepared {
                 None => candidate.state.z[row.pair].max(0.0),
                 Some(facet) => {
                     let free = scheme.is_none_or(|scheme| {
-                        // Without cohesion an open pair slips any way.
+                        // Without cohesion an open pair may slip either way.
                         let is_loose = scheme == PairScheme::OPEN;
                         is_loose || scheme.tangential.facets(polygon).contains(&facet)
                     });
@@ -190,7 +190,7 @@ impl Prepared {
     }
 }
 
-/// Refuses what no search comes to an end of, and what its exact numbers would fill the memory with.
+/// Refuses a size at which the search would never end or its exact numbers would fill the memory.
 fn too_many(what: &str, found: usize, most: usize) -> Result<(), QuestionError> {
     if found <= most {
         return Ok(());

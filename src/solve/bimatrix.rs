@@ -1,4 +1,4 @@
-//! An answer of a bimatrix game, for which Lemke's algorithm needs the values of its players as unknowns.
+//! An answer of a bimatrix game, for which Lemke's algorithm needs the players' values as unknowns.
 
 use std::sync::Arc;
 
@@ -13,8 +13,8 @@ use crate::lcp::outcome::{Outcome, Point};
 use crate::lcp::ratio_test::TieRule;
 use crate::watch::{Budget, Watch};
 
-/// z from an equilibrium of the game that the LCP is; `None` where it is none, and where no equilibrium is found. Its check
-/// is still to come.
+/// z from an equilibrium of the game that the LCP states; `None` where it states none or no equilibrium is found. The
+/// caller checks z.
 ///
 /// # Errors
 /// Interrupted.

@@ -99,7 +99,7 @@ impl<'a> Case<'a> {
         Ok(There { prepared: Arc::new(there), values })
     }
 
-    /// An answer of its own at other values of some of them; `None` where these values have no model.
+    /// The answer with some of them at other values, solved independently; `None` where these values have no model.
     ///
     /// # Errors
     /// Stopped, or a run that could not be made.

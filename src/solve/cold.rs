@@ -26,14 +26,14 @@ use crate::lcp::pivot::PivotLog;
 use crate::model::rules::{Covering, Engine, Rules};
 use crate::watch::{Quiet, Watch};
 
-/// What of an answer is worked out at once.
+/// How much of an answer is worked out at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Extent {
     /// All of it.
     Whole,
     /// States and forces of the joints with their check; [`Case::whole`] works out the rest.
     Joints,
-    /// The same without the words for the pivots: for those who ask for the equilibrium of many answers at once.
+    /// The same without descriptions of the pivots: for callers that check the equilibrium of many answers together.
     Counted,
 }
 
@@ -94,8 +94,8 @@ impl Case<'_> {
 impl Prepared {
     /// One run under exactly these rules. A ray is classified; nothing is proved of it yet.
     ///
-    /// What is left of p beside the load is nothing only where the state passes its check without it: where it does not,
-    /// the run ends in the ray that it is.
+    /// A p that is small beside the load counts as zero only where the state passes its check without it; otherwise the
+    /// run ends in a ray.
     pub(super) fn attempt_contact(
         &self,
         problem: &ContactProblem,
@@ -133,7 +133,7 @@ impl Prepared {
             }
             Outcome::Normal { .. } => {
                 run.point = refined(problem, &contact, run.point);
-                // An answer stands without the covering: that is how it is checked.
+                // An answer must hold without the covering: that is how it is checked.
                 run.point.p = 0.0;
             }
             _ => {}
@@ -146,7 +146,7 @@ impl Prepared {
             if extent != Extent::Counted {
                 solved.answer.pivots = sentence::pivot_records(pivots.recorded(), contact, system);
             }
-            // What a warm start follows are slips in two senses.
+            // A warm start can follow only slips along one line, + or −.
             if let Some(engine) = engine.filter(|_| solved.answer.is_answer() && !system.is_in_space()) {
                 let warm = WarmStart::new(engine, contact.clone(), problem.clone());
                 solved.warm = Some(Arc::new(Mutex::new(Some(warm))));
@@ -172,7 +172,7 @@ impl Prepared {
         self.state_of(problem, contact, run, (rules, extent), &Quiet)
     }
 
-    /// What a run ended in: the pairs, of an answer all the rest of that extent with its check, of a ray its class.
+    /// What a run ended in: the pairs; for an answer the rest of that extent, with its check; for a ray its class.
     fn state_of(
         &self,
         problem: &ContactProblem,
@@ -230,7 +230,7 @@ impl Prepared {
     }
 }
 
-/// Runs the engine that the rules name; of the working-scheme engine the dictionary it ends with comes back too.
+/// Runs the engine that the rules name; the working-scheme engine also returns the dictionary it ends with.
 fn run_engine(
     problem: &ContactProblem,
     contact: &ContactLcp,
@@ -239,7 +239,7 @@ fn run_engine(
 ) -> Result<(Run, Option<Parametric>), SolveError> {
     let system = &*problem.system;
     if system.yielding.is_some() && !problem.cone {
-        // Multipliers are those of the cone.
+        // Multipliers exist only for the cone.
         let refusal = system.dependence_refusal("cone off").unwrap_or_default();
         return Err(SolveError::Value(format!("{refusal}: `set cone on`")));
     }

@@ -17,7 +17,7 @@ use crate::watch::Watch;
 
 /// Contact pairs (or a third of the rows) up to which the tableau takes part.
 const TABLEAU_PAIRS: usize = 80;
-/// Contact pairs up to which exact arithmetic takes part: it would take longer than all the others beyond.
+/// Contact pairs up to which exact arithmetic takes part: beyond, it would take longer than all the others together.
 const COMPARED_EXACTLY: usize = 12;
 
 /// One combination and its end.

@@ -21,7 +21,7 @@ pub(super) struct InSpace {
     /// The problem that the state answers: friction is the polygon's where the cone was not reached.
     pub(super) problem: ContactProblem,
     pub(super) record: PolygonRecord,
-    /// What is to be said of an answer that is none on the cone.
+    /// What is to be said of an answer that is not on the cone.
     pub(super) note: Option<String>,
 }
 
@@ -62,7 +62,7 @@ pub(super) fn taken(problem: &ContactProblem, polygon: JointState, watch: &dyn W
 }
 
 impl Prepared {
-    /// Whether the cone has no answer where the polygon has one, which is proved: then the result is that collapse.
+    /// Whether it is proved that the cone has no answer where the polygon has one: then the result is that collapse.
     pub(super) fn collapses_on_cone(&self, solved: &mut Solved, problem: &ContactProblem, covering: Covering) -> bool {
         let facets = problem.polygon.facets();
         let motions = FreeMotions::new(&problem.system, self.built());

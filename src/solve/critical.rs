@@ -9,9 +9,9 @@ use crate::model::parameter::ParameterValues;
 use crate::model::rules::Rules;
 use crate::watch::Watch;
 
-/// Blocks drawn where all of them are too many.
+/// Blocks drawn at random where there are too many to try all.
 const SAMPLES: u64 = 20_000;
-/// Seed of the drawing.
+/// Seed of these draws.
 const SEED: u64 = 1;
 
 impl Prepared {

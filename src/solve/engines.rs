@@ -219,7 +219,7 @@ pub fn exact_stiffness(system: &ContactSystem, watch: &dyn Watch) -> Option<Vec<
     let gram: Vec<Vec<BigRational>> =
         (0..free).map(|a| (0..free).map(|b| dot(&|i| z[i][a].clone(), &|i| z[i][b].clone())).collect()).collect();
     let Some(inverse) = inverse(gram, watch)? else {
-        return Some(r); // dependent columns: an orthonormal basis never is
+        return Some(r); // dependent columns: an orthonormal basis has none
     };
     let going_on = || (!watch.stop()).then_some(());
     // Q = Z (ZᵀZ)⁻¹, P = 1 − Q Zᵀ.

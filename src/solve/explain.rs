@@ -1,5 +1,5 @@
-//! Questions to a solved state: its ties, its dictionary, how far its scheme holds, what would stop a collapse, what is
-//! loose.
+//! Questions about a solved state: its ties, its dictionary, how far its scheme holds, what would stop a collapse, what
+//! is loose.
 
 use std::time::Duration;
 
@@ -65,7 +65,7 @@ impl Solved {
             return Vec::new();
         };
         if system.is_in_space() {
-            // How far a slip may turn before its pair sticks is no question of the last basis.
+            // The last basis does not tell how far a slip may turn before its pair sticks.
             return Vec::new();
         }
         let basis = pivots.basis();
@@ -112,8 +112,8 @@ impl Solved {
 }
 
 impl Prepared {
-    /// What would stop a collapse; `None` where there is none. Takes at most [`REMEDY_TIME`] and says whether all
-    /// was looked for.
+    /// What would stop a collapse; `None` where there is none. Takes at most [`REMEDY_TIME`] and says whether
+    /// everything was tried.
     pub fn remedies(&self, solved: &Solved, watch: &dyn Watch) -> Option<Remedies> {
         let RunData::Contact { problem, .. } = &solved.run else {
             return None;
@@ -129,11 +129,11 @@ impl Prepared {
         Some(remedies(problem, &FreeMotions::new(&problem.system, self.built()), parts, &solves, &budget))
     }
 
-    /// What is allowed in the scenario and hardly meant, in the order of the file, under the values of the file.
+    /// What the scenario allows but can hardly mean, in the order of the file and under its values.
     pub fn warnings(&self, scenario: &Scenario) -> Vec<Problem> {
         let mut warnings = plausible::warnings(scenario);
         if let Geometry::Structure { system, .. } | Geometry::Contact { system, .. } = &*self.geometry {
-            // What lies on the wrong side is told once.
+            // A part on the wrong side is reported once.
             let told: Vec<String> = warnings.iter().map(|warning| warning.path.clone()).collect();
             warnings.extend(unpressed(scenario, system).into_iter().filter(|warning| !told.contains(&warning.path)));
         }

@@ -25,7 +25,7 @@ use crate::text::words::{list, short};
 /// Most pairs that a note names.
 const NAMED: usize = 6;
 
-/// A slip below this multiple of the displacements that it is the difference of is zero.
+/// A slip below this multiple of the displacements whose difference it is counts as zero.
 const SLIP_ZERO: f64 = 16.0 * f64::EPSILON;
 
 impl Prepared {
@@ -115,7 +115,7 @@ impl Prepared {
                         continue;
                     }
                     let mut slips = pair.tangents.iter().map(|&t| {
-                        // All components of a displacement are as well known as the largest one.
+                        // All components of a displacement have the absolute error of the largest one.
                         let along = |&(node, weight): &(usize, f64)| {
                             let [x, y, z, ..] = u.0[node];
                             [weight * dot(t, [x, y, z]), weight.abs() * (x.abs() + y.abs() + z.abs())]
@@ -159,7 +159,7 @@ impl Prepared {
                     match &mut pairs[pair].space {
                         None => pairs[pair].z_t = *along,
                         Some(space) => {
-                            // t1 and t2 follow one another.
+                            // The joint along t2 follows that along t1.
                             space.z_t = [*along, slips.next().map_or(0.0, |(_, across)| *across)];
                             pairs[pair].z_t = space.z_t[0].hypot(space.z_t[1]);
                         }
@@ -225,7 +225,7 @@ pub(super) fn named(structure: &Structure, u: &Displacements) -> Vec<NodeDisplac
     structure.nodes.iter().zip(&u.0).map(|(node, u)| NodeDisplacement::of(structure.dimension, &node.id, *u)).collect()
 }
 
-/// Takes the check over, and says what holds open pairs.
+/// Takes over the check, and says what holds open pairs.
 pub(super) fn judge(answer: &mut Answer, check: Check) {
     answer.check = check;
     if !answer.check.passed {

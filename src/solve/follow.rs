@@ -17,7 +17,7 @@ use crate::solve::state::Solved;
 use crate::solve::warm::WarmStart;
 use crate::watch::Watch;
 
-/// Below this number of pairs a cold start is as quick as anyone can see, and it has the pivots.
+/// Below this number of pairs a cold start takes no noticeable time, and it has pivots to show.
 pub const WARM_PAIRS: usize = 150;
 
 impl Case<'_> {
@@ -31,8 +31,8 @@ impl Case<'_> {
         self.solve_to(last, Extent::Whole)
     }
 
-    /// As [`Case::solve_from`], but of an answer that is followed only states and forces of the pairs, with the check over
-    /// the joints: what a slider shows first. [`Case::whole`] works out the rest.
+    /// As [`Case::solve_from`], but an answer that is followed has only the states and forces of the pairs, with the
+    /// check over the joints: what a slider shows first. [`Case::whole`] works out the rest.
     ///
     /// # Errors
     /// As [`Case::solve`].
@@ -80,14 +80,14 @@ impl Case<'_> {
         let system = prepared.system()?;
         let slot = last.warm.as_ref()?;
         let mut guard = slot.lock().unwrap_or_else(PoisonError::into_inner);
-        // Taken out, so that nothing half-way stays behind where the path fails.
+        // Taken out, so that nothing half-done stays behind where the path fails.
         let mut kept = guard.take()?;
         let start = Instant::now();
         let problem = contact_problem(system, &factors(prepared, values), values);
         let problem_seconds = start.elapsed().as_secs_f64();
         let (mut solved, mut seconds) = prepared.follow_kept(&mut kept, &problem, (rules, extent), watch)?;
         if !solved.answer.is_answer() {
-            // The way is made; only its end was not sharp enough.
+            // The path was followed; only its end was not accurate enough.
             let way = solved.answer.start;
             kept.refine();
             let (refined, more) = prepared.follow_kept(&mut kept, &problem, (rules, extent), watch)?;

@@ -16,8 +16,8 @@ use crate::model::rules::Rules;
 impl Prepared {
     /// The answer at a moment of a history: `pairs` and `state` have total displacements, `problem` the load there.
     ///
-    /// The laws of contact tie the forces to the slip just before, `last_slip` over the joints, and not to the total
-    /// one: the check takes that.
+    /// The laws of contact tie the forces to the latest slip, `last_slip` over the joints, and not to the total one:
+    /// the check uses it.
     pub(crate) fn history_answer(
         &self,
         problem: &ContactProblem,
@@ -35,7 +35,7 @@ impl Prepared {
         let mut answer = empty_answer(&run, 1.0, Rules::default().into(), size);
         answer.pairs = pairs;
         let equilibrium = self.recover(&mut answer, problem, state);
-        // λ afresh: the history keeps exact values where the laws give them.
+        // λ is computed afresh: the history keeps exact values where the laws give them.
         let mut moved = JointState::at(problem, state.in_forms(system).0, 0.0);
         for joint in system.pairs.iter().flat_map(|pair| pair.tangential.clone()) {
             moved.z[joint] = last_slip[joint];

@@ -1,4 +1,4 @@
-//! Collapses proved by a motion that proved others before: near one another they mostly are the same.
+//! Collapses proved by a motion that proved others before: neighbouring ones mostly share it.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -32,7 +32,7 @@ impl Clone for KnownCollapses {
 }
 
 impl KnownCollapses {
-    /// Knows what the other one does.
+    /// Takes over what the other one knows.
     pub fn become_as(&self, other: &KnownCollapses) {
         let other = other.clone().0.into_inner().unwrap_or_else(PoisonError::into_inner);
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = other;
@@ -45,7 +45,7 @@ impl KnownCollapses {
         known.amounts.iter().any(|amounts| certify_again(problem, &known.motions, amounts).is_some())
     }
 
-    /// Keeps the motion that proved a collapse of this problem, where it is told by its free motions; those of another
+    /// Keeps the motion that proved a collapse of this problem, where it is given by its free motions; those of another
     /// system are forgotten.
     pub(super) fn learn(&self, problem: &ContactProblem, built: Built<'_>, certificate: &Certificate) {
         if certificate.amounts.is_empty() {

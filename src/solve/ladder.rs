@@ -11,7 +11,7 @@ use crate::watch::{Budget, Watch};
 
 /// An exact attempt that nobody asked for is given up after this time …
 pub(super) const EXACT_BUDGET: Duration = Duration::from_secs(30);
-/// … or after this one where the run in f64 has failed for certain and exact arithmetic is what is left.
+/// … or after this one where the run in f64 has failed for certain and only exact arithmetic is left.
 pub(super) const LAST_RESORT: Duration = Duration::from_secs(120);
 
 /// A first run without an answer, and the tries since.
@@ -31,11 +31,13 @@ impl Ladder {
         ladder
     }
 
-    /// Tries the rungs in order, those in exact arithmetic within `budget` each. Ends with the first answer; or, where the
-    /// first run broke down or failed its check, with the first try of which `proved` says that there is none.
+    /// Tries the rungs in order, those in exact arithmetic within `budget` each. Ends with the first answer; or, where
+    /// the first run broke down or failed its check, with the first try for which `proved` says that there is no
+    /// answer.
     ///
     /// # Errors
-    /// Those of the attempts; a covering that does not fit the numbers (weight without friction) is no try.
+    /// Those of the attempts; a covering that does not fit the numbers (weight without friction) does not count as a
+    /// try.
     pub(super) fn climb<R: Copy + Into<AttemptRules>>(
         &mut self,
         rungs: &[R],
@@ -93,7 +95,7 @@ impl Ladder {
         Ok(None)
     }
 
-    /// Whether a run in f64 under this covering and another tie-break would be one that was made.
+    /// Whether a run in f64 under this covering and another tie-break would repeat one that was made.
     fn would_repeat(&self, rules: AttemptRules) -> bool {
         rules.engine == AttemptEngine::Lemke(Engine::Scheme)
             && rules.tie_break != self.first.answer.rules.tie_break
@@ -163,7 +165,7 @@ impl Ladder {
         format!("the run under the default rules {how}; the answer was found at attempt {number} ({found})")
     }
 
-    /// The end without an answer: the first run is what is shown, told of the tries; its entry stands last among the
+    /// The end without an answer: the first run is shown, with a note of the tries; its entry stands last among the
     /// attempts.
     pub(super) fn without_answer(mut self) -> Solved {
         if !self.tried.is_empty() {
@@ -252,7 +254,7 @@ mod tests {
                 true
             }
         }
-        // Ctrl-C is not the end of the time.
+        // Ctrl-C is not a timeout.
         assert_eq!(within(Duration::from_secs(600), &Stopped, endless), Err(SolveError::Interrupted));
     }
 }

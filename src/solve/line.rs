@@ -55,8 +55,8 @@ impl Case<'_> {
         problem.map_or_else(Vec::new, |problem| problem.frictions())
     }
 
-    /// The answer, with the check over the joints; of a structure [`Unbalanced`] tells what is left to check. No words are
-    /// made for pivots or for what would stop a collapse.
+    /// The answer, with the check over the joints; for a structure [`Unbalanced`] has what is left to check. Neither
+    /// pivots nor what would stop a collapse are put into words.
     ///
     /// # Errors
     /// As [`Case::solve`].
@@ -64,8 +64,8 @@ impl Case<'_> {
         self.solve_as(true, Extent::Counted)
     }
 
-    /// As [`Case::solve_briefly`], of an answer only the pairs: checked as a whole, its displacements, members, reactions and
-    /// the words for its pivots are not there.
+    /// As [`Case::solve_briefly`], but an answer has only its pairs: it is checked as a whole, but comes without
+    /// displacements, members, reactions and descriptions of its pivots.
     ///
     /// # Errors
     /// As [`Case::solve`].
@@ -74,9 +74,9 @@ impl Case<'_> {
         if solved.is_balanced() { Ok(solved) } else { self.solve_briefly() }
     }
 
-    /// As [`Case::solve_pairs`] for those who look at many places that may lie at the very end of what holds: what is no
-    /// answer is tried again in f64 only, and nothing at all is tried where a known collapse proves that there is none.
-    /// Without an answer the word for how the first run ended.
+    /// As [`Case::solve_pairs`], for callers that try many values close to where answers end: what is no answer is
+    /// tried again in f64 only, and nothing at all is tried where a known collapse proves that there is none. Without
+    /// an answer: the word for how the first run ended.
     ///
     /// # Errors
     /// As [`Case::solve`].
@@ -97,12 +97,13 @@ impl Case<'_> {
         Ok(solved.if_answer(self.rules.cone))
     }
 
-    /// As [`Case::solve_counted`] where [`Case::is_unique`], from the answer before it on this line where that leads there.
+    /// As [`Case::solve_counted`]; where [`Case::is_unique`] holds, from the previous answer on this line if that leads
+    /// there.
     ///
     /// # Errors
     /// As [`Case::solve`].
     pub fn solve_next(self, line: &mut Line) -> Result<Solved, SolveError> {
-        // Taken out, so that nothing half-way stays behind where the path fails.
+        // Taken out, so that nothing half-done stays behind where the path fails.
         if let Some(mut kept) = line.0.take()
             && let Some(solved) = self.same_as_cold(&mut kept)
         {
@@ -125,7 +126,7 @@ impl Case<'_> {
         let changes = kept.follow(&problem, watch)?.pivots;
         let basis = kept.basis();
         if basis.z.is_empty() {
-            // A cold run ends at once.
+            // Here a cold run ends at once.
             return None;
         }
         let contact = contact_lcp_like(Some(kept.contact()), &problem, rules.covering).ok()?;
@@ -141,7 +142,7 @@ impl Case<'_> {
 #[derive(Debug, Default)]
 pub struct Line(Option<WarmStart>);
 
-/// An answer of a structure whose equilibrium is still to be looked at.
+/// An answer of a structure whose equilibrium is still to be checked.
 #[derive(Debug)]
 pub struct Unbalanced {
     prepared: Prepared,
@@ -159,7 +160,7 @@ impl Solved {
         }
     }
 
-    /// What the equilibrium of the answer is told from, where that is still to be looked at.
+    /// What the check of equilibrium needs, where that is still to be made.
     fn unbalanced(&self) -> Option<Unbalanced> {
         match (&self.rest, &self.run) {
             (Some(rest), RunData::Contact { problem, .. }) => Some(Unbalanced {
@@ -171,8 +172,8 @@ impl Solved {
         }
     }
 
-    /// Itself, or the word for how the run ended without an answer, in space without one on Coulomb's cone where that is asked
-    /// for.
+    /// Itself, or the word for how the run ended without an answer; with `cone`, an answer in space must be on
+    /// Coulomb's cone.
     pub fn if_answer(self, cone: bool) -> Result<Solved, &'static str> {
         if self.stands(cone) { Ok(self) } else { Err(self.answer.outcome.word()) }
     }
@@ -182,7 +183,7 @@ impl Solved {
         self.unbalanced().is_none_or(|left| Unbalanced::are_balanced(&[&left]) == [true])
     }
 
-    /// The answer alone, and what its equilibrium is told from where that is still to be looked at.
+    /// The answer alone, and what the check of its equilibrium needs where that is still to be made.
     pub fn into_answer(self) -> (Answer, Option<Unbalanced>) {
         let left = self.unbalanced();
         (self.answer, left)
@@ -198,7 +199,7 @@ impl Unbalanced {
         Unbalanced { prepared: self.prepared.clone(), problem: self.problem.clone(), joints }
     }
 
-    /// Of each whether the forces balance at every node.
+    /// For each: whether the forces balance at every node.
     pub fn are_balanced(all: &[&Unbalanced]) -> Vec<bool> {
         let mut balanced = Vec::with_capacity(all.len());
         // Those of one geometry share its factorization.

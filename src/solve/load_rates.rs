@@ -13,11 +13,11 @@ use crate::model::problem::Problems;
 use crate::model::scenario::{GivenLoad, Source};
 use crate::model::structure::LoadCase;
 
-/// A scenario made ready with the growth of its loads beside them.
+/// A scenario made ready with its loads and, beside them, their growth.
 pub struct LoadRates {
     /// The cases of the scenario as they are at the present values, then one for each case that grows, at factor 0.
     pub prepared: Arc<Prepared>,
-    /// For each of those the index of the case that grows.
+    /// For each of the latter: the index of the case that grows.
     pub growing: Vec<usize>,
 }
 

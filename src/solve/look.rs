@@ -1,4 +1,4 @@
-//! A look at a scenario that solves nothing: what only contact holds, and what is hardly meant.
+//! A look at a scenario that solves nothing: what only contact holds, and what can hardly be meant.
 
 use std::time::Duration;
 
@@ -13,10 +13,10 @@ use crate::model::scenario::{Scenario, Source};
 use crate::model::structure::Structure;
 use crate::watch::{Budget, Watch};
 
-/// Up to so many nodes a factorization is over before anybody waits for it, and looks into everything.
+/// Up to this many nodes a factorization takes no noticeable time, and it leaves nothing open.
 const FEW_NODES: usize = 2000;
 
-/// For how long at most a large structure is looked into by its numbers.
+/// Most time for a look into the numbers of a large structure.
 pub const LOOK_TIME: Duration = Duration::from_secs(10);
 
 /// What was seen.
@@ -24,18 +24,18 @@ pub const LOOK_TIME: Duration = Duration::from_secs(10);
 pub struct Looked {
     /// What only contact holds, in sentences.
     pub loose: Vec<String>,
-    /// What is allowed and hardly meant, in the order of the file, under the values of the file.
+    /// What is allowed but can hardly be meant, in the order of the file and under its values.
     pub warnings: Vec<Problem>,
     /// What was not looked into for want of time, in a sentence.
     pub left_out: Option<String>,
 }
 
-/// Looks at a scenario under the values of its file. Large structures are told from the motions of their parts; only
-/// where those leave open whether something moves in itself, or whether the loads press every contact, the main system is
-/// factorized, for [`LOOK_TIME`] at most.
+/// Looks at a scenario under the values of its file. Large structures are judged by the motions of their parts; only
+/// where those leave open whether something moves in itself, or whether the loads press every contact, the main system
+/// is factorized, for [`LOOK_TIME`] at most.
 ///
 /// # Errors
-/// As [`prepare`], but for what was left out.
+/// As [`prepare`], except for what was left out.
 pub fn look(scenario: &Scenario, watch: &dyn Watch) -> Result<Looked, PrepareError> {
     look_within(LOOK_TIME, scenario, watch)
 }

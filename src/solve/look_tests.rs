@@ -88,7 +88,7 @@ fn a_structure_that_stands_without_its_contacts_is_looked_into_by_its_numbers() 
     assert!(!is_decided_by_parts(&scenario));
     let (seen, expected) = (look_within(LONG, &scenario, &Quiet).unwrap(), by_numbers(&scenario, &Quiet).unwrap());
     assert_eq!((&seen.warnings, &seen.left_out), (&expected.warnings, &None));
-    // Without time it is told what was not looked into.
+    // Without time, it says what was not looked into.
     let hasty = look_within(Duration::ZERO, &scenario, &Quiet).unwrap();
     assert!(hasty.left_out.is_some_and(|sentence| sentence.contains("`solve` decides it")));
 }

@@ -35,7 +35,7 @@ const ALL_BASES: &str = "Proved: every complementary basis was tried in exact ar
 /// What is said of an equilibrium.
 const OF_GAME: &str =
     "this is a bimatrix game; stated with the players' values as unknowns Lemke's algorithm finds an equilibrium";
-/// Rows up to which all bases are gone through before anything else.
+/// Rows up to which all bases are tried before anything else.
 const FEW_ROWS: usize = 9;
 /// Random covering vectors that are tried.
 const RANDOM_COVERINGS: u64 = 3;
@@ -151,7 +151,7 @@ pub(super) fn attempt_plain(
     }
     answer.solution = Some(PlainSolution { z: run.point.z.clone(), w: run.point.w.clone() });
     if answer.is_answer() {
-        // A marginal answer is one up to the p that was left.
+        // A marginal answer holds only up to the p that was left.
         let tolerance = if marginal { TOLERANCE } else { ROUNDING };
         answer.check = check_plain(&lcp, &run.point.z, tolerance);
         if !answer.check.passed {
@@ -193,8 +193,8 @@ pub(super) fn solve_plain_judged(
     Ok(first)
 }
 
-/// Proofs that there is no answer, then other rules, then all bases; the first answer wins. Without one the first run is
-/// what is shown, with what was proved.
+/// Proofs that there is no answer, then other rules, then all bases; the first answer wins. Without one the first run
+/// is shown, with what was proved.
 fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn Watch) -> Result<Solved, SolveError> {
     if let Some(z) = equilibrium(&problem.lcp, watch)? {
         let found = plain_answer(&problem.lcp, &z, AttemptRules::from(own).by(AttemptEngine::Bimatrix));
@@ -208,7 +208,7 @@ fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn
         ray.exact = ray_holds(lcp, &pivots.basis(), ray.entering, &Budget::new(watch, EXACT_BUDGET));
         first.answer.ray = Some(ray.record(Verdict::Undecided, UNKNOWN));
     }
-    // Beyond a few rows a combination of them proves sooner than all bases that there is no answer.
+    // Beyond a few rows, a combination of rows proves sooner than all bases that there is no answer.
     let few = problem.lcp.size() <= FEW_ROWS;
     let (mut proof, mut given_up) = (None, false);
     if !few && first.plain_ray.is_some() {
@@ -263,7 +263,7 @@ fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn
     Ok(ladder.without_answer())
 }
 
-/// An answer of a bare LCP that no pivots of its own led to as a solved state, freshly checked.
+/// An answer of a bare LCP found without pivots of its own, as a solved state, freshly checked.
 pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], rules: AttemptRules) -> Solved {
     let w = lcp.times(z) + &lcp.q;
     let point = Point { w: w.iter().copied().collect(), z: z.to_vec(), p: 0.0 };
@@ -297,7 +297,7 @@ fn prove_in_time(lcp: &MirroredLcp, watch: &dyn Watch) -> (Option<RayProof>, boo
     (proof, given_up)
 }
 
-/// Whether it is proved that there is no answer, in place of the ray of a later attempt.
+/// Replaces the ray by a proof that there is no answer; whether there is such a proof.
 fn prove_ray(solved: &mut Solved, problem: &PlainProblem, found: Option<&PlainAnswers>, watch: &dyn Watch) -> bool {
     let Some(ray) = &solved.plain_ray else { return false };
     let record = if found.is_some_and(PlainAnswers::none) {
@@ -324,8 +324,8 @@ fn fail_ray(solved: &mut Solved) {
     }
 }
 
-/// What is tried after a first run without an answer, in order. Where rounding is to blame exact arithmetic comes first;
-/// after a ray that is one in truth, other coverings.
+/// What is tried after a first run without an answer, in order. Where rounding is to blame exact arithmetic comes
+/// first; after a ray that is no rounding, other coverings.
 fn rungs(problem: &PlainProblem, first: &Solved, own: PlainRules) -> Vec<PlainRules> {
     if first.plain_ray.as_ref().is_some_and(|ray| ray.whatever_the_covering) {
         return Vec::new();
@@ -338,7 +338,7 @@ fn rungs(problem: &PlainProblem, first: &Solved, own: PlainRules) -> Vec<PlainRu
     coverings.push(PlainCovering::Rows);
     coverings.extend((1..=RANDOM_COVERINGS).map(PlainCovering::Random));
     let mut rungs: Vec<PlainRules> = coverings.into_iter().map(|covering| PlainRules { covering, ..own }).collect();
-    // The rows may happen to be as large as d.
+    // The covering by rows may happen to be a multiple of d.
     rungs.retain(|rules| !is_multiple(&problem.covered(rules.covering), &problem.lcp));
     rungs.push(PlainRules { tie_break: TieBreak::Random(1), ..own });
     if problem.lcp.size() <= EXACT_ROWS {
@@ -354,7 +354,7 @@ fn rungs(problem: &PlainProblem, first: &Solved, own: PlainRules) -> Vec<PlainRu
     rungs
 }
 
-/// Whether the covering vectors are the same but for their length: the same pivots.
+/// Whether the covering vectors differ only by a factor: then the pivots are the same.
 fn is_multiple(a: &MirroredLcp, b: &MirroredLcp) -> bool {
     let (x, y) = (&a.covering, &b.covering);
     (0..x.len()).all(|i| x[i] * y[0] == y[i] * x[0])

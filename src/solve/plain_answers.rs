@@ -17,9 +17,9 @@ use crate::watch::Watch;
 
 /// Most rows of the exact check of a basis.
 const MOST_CHECKED: usize = 1000;
-/// Steps times n³ after which a search beside a solution is given up; nine rows need 1023 nodes.
+/// Steps times n³ after which a search that accompanies a solution is given up; nine rows need 1023 nodes.
 const BRIEF: u64 = 40_000_000;
-/// Between two words of progress.
+/// Steps between two reports of progress.
 const STEPS: u64 = 64;
 
 /// How long a search may take.
@@ -27,7 +27,7 @@ const STEPS: u64 = 64;
 pub enum Effort {
     /// As long as it takes, or until it is stopped; what was found until then is kept.
     Full,
-    /// A number of steps that a few seconds suffice for.
+    /// A number of steps that takes a few seconds.
     Brief,
 }
 
@@ -58,7 +58,7 @@ pub struct PlainAnswers {
 }
 
 impl PlainAnswers {
-    /// There is none: proved.
+    /// Whether it is proved that there is none.
     pub fn none(&self) -> bool {
         self.complete && self.undecided == 0 && self.answers.is_empty()
     }
@@ -75,7 +75,7 @@ pub struct PlainCheck {
     pub zeros: Vec<(char, usize)>,
 }
 
-/// Solves a basis exactly and tells every sign; `None` for more than a thousand rows, or where `watch` stops it.
+/// Solves a basis exactly and determines every sign; `None` for more than a thousand rows, or where `watch` stops it.
 pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize], watch: &dyn Watch) -> Option<PlainCheck> {
     let n = lcp.size();
     if n > MOST_CHECKED || lcp.full_size != n {
@@ -112,7 +112,7 @@ pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize], watch: &dyn Watch
     Some(check)
 }
 
-/// Every answer of a bare LCP, given up after some seconds: what a solution looks at beside its run.
+/// Every answer of a bare LCP, given up after some seconds: it accompanies a solution.
 pub fn all_plain_answers(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<PlainAnswers> {
     search_plain_answers(lcp, Effort::Brief, watch)
 }
@@ -157,7 +157,7 @@ pub fn search_plain_answers(lcp: &MirroredLcp, effort: Effort, watch: &dyn Watch
 pub enum RayProof {
     /// No z ≥ 0 is even feasible.
     Infeasible(Farkas),
-    /// An answer exists for every q: the ray is rounding, or the covering's.
+    /// An answer exists for every q: the ray is due to rounding or to the covering.
     Solvable(SolvableClass),
 }
 

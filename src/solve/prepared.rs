@@ -1,5 +1,5 @@
 //! What depends on geometry, stiffness and loads alone: factorization, R, RF per load case. Reused for every change of
-//! laws and load factors; a change of a number in the loads or in the geometry computes what it must anew.
+//! laws and load factors; a change of a number in the loads or in the geometry recomputes what depends on it.
 
 use std::fmt;
 use std::sync::Arc;
@@ -240,7 +240,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
     let joints = joints(&structure.pairs);
     let main =
         MainSystem::new(structure, &joints, watch).map_err(|error| main_system_problem(scenario, structure, error))?;
-    // The joints of a pair along its tangents follow one another.
+    // The two tangential joints of a pair stand one after the other.
     let tangential = |pair: usize| {
         let of_pair = |joint: &Joint| joint.pair == pair && joint.direction != JointDirection::Normal;
         let first = joints.iter().position(of_pair).unwrap_or_default();

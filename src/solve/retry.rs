@@ -70,8 +70,8 @@ impl Prepared {
         }
         let certified = match solved.ray.as_mut() {
             Some(report) => certify_ray(report, &problem, self.built()),
-            // An answer on the polygon that Newton's method did not take to the cone, or joints that press on and on, which
-            // end in a failed check.
+            // An answer on the polygon that Newton's method did not take to the cone, or dependent joints whose forces
+            // grow without end, which end in a failed check.
             None => {
                 (solved.answer.is_answer() || system.yielding.is_some())
                     && self.collapses_on_cone(&mut solved, &problem, rules.covering)
@@ -109,8 +109,9 @@ impl Prepared {
 }
 
 impl Prepared {
-    /// The first run, or the first of the retries in f64 that is an answer, of it the pairs; else the first run. Where it
-    /// is certified that there is none, none is tried, and the motion that proves it becomes a known one.
+    /// The first of the first run and the retries in f64 that is an answer, with its pairs alone; else the first run.
+    /// Where it is certified that there is no answer, no retry is made, and the motion that proves it becomes a known
+    /// one.
     ///
     /// # Errors
     /// Those of the attempts.
@@ -154,7 +155,7 @@ impl Job<'_> {
     }
 
     /// Other rules, then the path from zero load, then all working schemes; the first answer wins. Without one the run
-    /// under the default rules is what is shown, with what was proved.
+    /// under the default rules is shown, with what was proved.
     fn retry(&self, mut first: Solved) -> Result<Solved, SolveError> {
         let m = self.problem.system.pairs.len();
         let class = first.ray.as_ref().map(|report| report.class);

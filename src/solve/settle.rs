@@ -1,5 +1,5 @@
-//! The answer of a bare LCP made as true to its data as f64 allows: refined in doubled precision, and where that does not
-//! do, solved exactly.
+//! The answer of a bare LCP made as true to its data as f64 allows: refined in doubled precision, and where that is not
+//! enough, solved exactly.
 
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
@@ -16,7 +16,7 @@ use crate::lcp::problem::NOISE;
 use crate::lcp::variable::Variable;
 use crate::watch::Watch;
 
-/// Steps of refinement; each gains as many digits as the first solution has.
+/// Steps of refinement; each gains as many digits as the first solution has right.
 const STEPS: usize = 2;
 /// A z that refinement leaves smaller than this part of its first correction was nothing but rounding.
 const VANISHED: f64 = 1e-8;
@@ -89,7 +89,7 @@ pub(super) fn ray_holds(lcp: &MirroredLcp, basis: &Basis, entering: Variable, wa
     Some(whole.signs_hold(&vertex, &|row| &row.q) && whole.signs_hold(&direction, &|row| &row.entering))
 }
 
-/// A row of the LCP multiplied by `scale`, which makes it whole.
+/// A row of the LCP multiplied by `scale`, which makes its entries integers.
 struct WholeRow {
     index: usize,
     /// Of the basic z, then of p where it is basic.
@@ -128,7 +128,7 @@ impl<'a> WholeBasis<'a> {
         Some(WholeBasis { basis, rows: (0..lcp.size()).map(row).collect() })
     }
 
-    /// The basic variables for which the active rows are as `right` says.
+    /// The basic variables that solve the active rows for the right side `right`.
     fn solve(&self, right: &dyn Fn(&WholeRow) -> BigInt, watch: &dyn Watch) -> Option<Quotients> {
         let active = || self.basis.active.iter().map(|&i| &self.rows[i]);
         let matrix: Vec<Vec<BigInt>> = active().map(|row| row.basic.clone()).collect();

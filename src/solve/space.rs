@@ -1,5 +1,5 @@
 //! Retries in space: a ray at one polygon is not final (method §7). Turned and finer polygons are tried until an answer
-//! reaches Coulomb's cone or a collapse is certified on it; without either the last of them tells what is known.
+//! reaches Coulomb's cone or a collapse is certified on it; without either, the last of them says what is known.
 
 use std::f64::consts::TAU;
 
@@ -43,11 +43,12 @@ impl Prepared {
         first: Solved,
         watch: &dyn Watch,
     ) -> Result<Solved, SolveError> {
-        // An answer on one of the finest polygons that Newton's method could not take to the cone. One on a coarser polygon
-        // counts no more where the finer ones have none: friction beyond Coulomb's bound held it.
+        // An answer on one of the finest polygons that Newton's method could not take to the cone. One on a coarser
+        // polygon does not count where the finer ones have none: friction beyond Coulomb's bound held it.
         let mut on_polygon = first.answer.is_answer().then(|| first.clone());
         let mut last = first.clone();
-        // A certificate hangs on the cone, not on the polygon inside it: what was looked for in vain is not looked for again.
+        // A certificate depends on the cone, not on the polygon inside it: what was looked for in vain is not looked
+        // for again.
         let mut in_vain = first.ray.as_ref().and_then(|report| report.in_vain());
         let mut ladder = Ladder::new(first);
         let mut facets = usize::from(rules.facets);

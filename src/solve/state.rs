@@ -59,7 +59,7 @@ pub struct Solved {
     pub cycled: bool,
     /// The dictionary of the answer, for the next change; contact problems under the default engine only.
     pub(super) warm: Option<WarmSlot>,
-    /// What is still to be worked out of an answer; see [`Solved::completed`].
+    /// What is still to be worked out for an answer; see [`Solved::completed`].
     pub(super) rest: Option<Arc<Rest>>,
     /// The pivot that was looked at last: pairs and displacements there come from one state.
     pub(super) looked_at: LookedAt,
@@ -88,7 +88,7 @@ impl Solved {
         pivots
     }
 
-    /// Rows of a bare LCP whose z is basic: those of the last basis, of an answer without pivots those with z > 0.
+    /// Rows of a bare LCP whose z is basic: those of the last basis; for an answer without pivots, those with z > 0.
     pub(super) fn basic_rows(&self, pivots: &PivotLog) -> Vec<usize> {
         match &self.answer.solution {
             Some(solution) if self.answer.rules.engine.is_without_pivots() => {
@@ -103,7 +103,7 @@ impl Solved {
         self.rest.is_none()
     }
 
-    /// The same with what was left for later; no answer any more where the check of equilibrium fails.
+    /// The same with what was left for later; it ceases to be an answer where the check of equilibrium fails.
     pub fn completed(&self) -> Solved {
         let mut whole = Solved { rest: None, ..self.clone() };
         if let (Some(rest), RunData::Contact { problem, .. }) = (&self.rest, &self.run) {

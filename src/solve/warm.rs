@@ -21,7 +21,7 @@ use crate::watch::Watch;
 const PIVOTS: usize = 2_000;
 /// Friction that moves further than this from that of the dictionary is solved cold.
 const FRICTION_REACH: f64 = 0.25;
-/// So often the extra cohesion is set anew before the cold start takes over.
+/// The extra cohesion is set anew this many times before the cold start takes over.
 const ROUNDS: usize = 8;
 
 /// The dictionary of an answer, kept for the next change.

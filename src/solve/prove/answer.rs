@@ -1,4 +1,4 @@
-//! The exact z of a working scheme, whose every sign holds.
+//! The exact z of a working scheme all of whose signs hold.
 
 use std::ops::ControlFlow;
 
@@ -11,13 +11,14 @@ use crate::lcp::exact::polyhedron::State;
 use crate::lcp::exact::rational_solve::{RationalSolution, clear_denominators, solve};
 use crate::watch::Watch;
 
-/// Most groups whose scheme is completed as a linear program where its equations do not decide alone.
+/// Most groups of a scheme that is completed by a linear program where its equations alone do not decide.
 const MOST_COMPLETED: usize = 30;
 /// Rounds in which branches with a wrong sign are exchanged.
 const ROUNDS: usize = 20;
 
-/// z of an answer in the branches `scheme`, one a group. Where the numbers as stored are just beyond a limit of this
-/// scheme, a branch whose sign fails is exchanged for the next one. `None`: no such answer was found, or it was stopped.
+/// z of an answer in the branches `scheme`, one per group. Where the numbers as stored are just beyond a limit of this
+/// scheme, a branch whose sign fails is exchanged for the next one. `None`: no such answer was found, or it was
+/// stopped.
 pub fn answer_of(forms: &Forms, mut scheme: Vec<usize>, watch: &dyn Watch) -> Option<Vec<BigRational>> {
     for _ in 0..ROUNDS {
         let Some(z) = solution(forms, &scheme, watch) else {
@@ -35,7 +36,7 @@ pub fn answer_of(forms: &Forms, mut scheme: Vec<usize>, watch: &dyn Watch) -> Op
     None
 }
 
-/// The equations of the scheme solved, where they are as many as the unknowns that it leaves and regular.
+/// The solution of the scheme's equations, where they are regular and as many as the unknowns that it leaves.
 fn solution(forms: &Forms, scheme: &[usize], watch: &dyn Watch) -> Option<Vec<BigRational>> {
     let n = forms.unknowns;
     let mut zero = vec![false; forms.names.len()];
@@ -45,7 +46,7 @@ fn solution(forms: &Forms, scheme: &[usize], watch: &dyn Watch) -> Option<Vec<Bi
         branch.zero.iter().take(1 + forms.tangents.max(1)).for_each(|&variable| zero[variable] = true);
     }
     let unknown: Vec<usize> = (0..n).filter(|&variable| !zero[variable]).collect();
-    // x_t of a frictionless pair may be 0 as it is.
+    // x_t of a frictionless pair may be identically 0.
     let says = |variable: &usize| !forms.forms[variable - n].iter().all(Zero::is_zero);
     let rows: Vec<usize> = (n..zero.len()).filter(|&variable| zero[variable]).filter(says).collect();
     if unknown.len() != rows.len() {
@@ -71,7 +72,7 @@ fn solution(forms: &Forms, scheme: &[usize], watch: &dyn Watch) -> Option<Vec<Bi
     Some(z)
 }
 
-/// A point of the scheme, all signs kept, as a linear program.
+/// A point of the scheme with all signs kept, by a linear program.
 fn completed(forms: &Forms, scheme: &[usize], watch: &dyn Watch) -> Option<Vec<BigRational>> {
     let mut go_on = || !watch.stop();
     let (mut polyhedron, (mut state, _)) = forms.start(&mut go_on);

@@ -3,9 +3,9 @@
 //! ```text
 //!   R ζ = 0;   ζ_n ≥ f |ζ_t| (bound pairs: ζ_n = 0);   work −load·ζ > bound Σ c |ζ_t|
 //! ```
-//! On ζ forces within the laws' bounds take at most the bound, and the loads do more: nothing balances them. In space |ζ_t| is
-//! the length of a vector where the proof is about Coulomb's cone, a bound of it from above so that it is a fraction; about the
-//! polygon it is a + b of the slip a d_k + b d_(k+1).
+//! On ζ forces within the laws' bounds take at most the bound, and the loads do more: nothing balances them. In space
+//! |ζ_t| is the length of a vector where the proof is about Coulomb's cone, bounded from above by a fraction; where it
+//! is about the polygon, |ζ_t| is a + b of the slip a d_k + b d_(k+1).
 
 use std::collections::HashMap;
 
@@ -26,7 +26,7 @@ use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::exact::polyhedron::State;
 use crate::watch::Watch;
 
-/// Most pairs of which the motion is found by exact linear programming.
+/// Most pairs for which the motion is found by exact linear programming.
 const MOST_PAIRS: usize = 60;
 
 /// The proof.
@@ -34,11 +34,11 @@ const MOST_PAIRS: usize = 60;
 pub struct Collapse {
     /// ζ over all joints.
     pub motion: Vec<BigRational>,
-    /// Of every pair what counts as |ζ_t|; empty in the plane, where that is plain.
+    /// For every pair what counts as |ζ_t|; empty in the plane, where it is the absolute value.
     pub slips: Vec<BigRational>,
     /// Whether it is about Coulomb's cone, or in the plane; otherwise about the polygon.
     pub on_cone: bool,
-    /// How much of each motion of the kernel it is made of; empty where R ζ = 0 by the numbers of R.
+    /// Its coefficients over the motions of the kernel; empty where R ζ = 0 by the numbers of R.
     pub amounts: Vec<BigRational>,
     /// −load·ζ.
     pub work: BigRational,
@@ -79,7 +79,7 @@ pub fn collapse(
     verified(contact, motion, Vec::new())
 }
 
-/// ζ as so much of each motion of the kernel.
+/// ζ from its coefficients over the motions of the kernel.
 fn made_of(contact: &ProvedContact, amounts: Vec<BigRational>) -> Option<Collapse> {
     let mut motion = vec![BigRational::zero(); contact.load.len()];
     for (column, amount) in contact.kernel.iter().zip(&amounts) {
@@ -94,7 +94,7 @@ fn made_of(contact: &ProvedContact, amounts: Vec<BigRational>) -> Option<Collaps
 /// With R positive semidefinite R ζ = 0, because ζᵀR ζ ≤ 0.
 fn motion_of(contact: &ProvedContact, sum: Sum) -> Vec<BigRational> {
     let mut factors: HashMap<usize, BigRational> = sum.into_iter().collect();
-    // The forms follow the unknowns, those of a pair one another.
+    // The forms stand after the unknowns, pair by pair.
     let mut variables = contact.load.len()..;
     let mut next = || variables.next().and_then(|variable| factors.remove(&variable)).unwrap_or_default();
     let mut motion = vec![BigRational::zero(); contact.load.len()];
@@ -110,7 +110,7 @@ fn motion_of(contact: &ProvedContact, sum: Sum) -> Vec<BigRational> {
                         motion[joint] += rational(part) * &factor;
                     }
                 }
-                // The forms of the slip speak of no force: they are the same for all motions.
+                // The forms turn^k are of slips, not of forces: nothing of ζ.
                 let turns = if contact.tangents == 1 { 0 } else { contact.polygon.half() };
                 (0..turns).for_each(|_| drop(next()));
             }

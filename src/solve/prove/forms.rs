@@ -93,7 +93,7 @@ impl Forms {
         }
     }
 
-    /// The unknowns of a contact system without any form: all that a motion speaks of.
+    /// The unknowns of a contact system without any form: all that a motion needs.
     pub fn unknowns_of(contact: &ProvedContact) -> Forms {
         let m = contact.ids.len();
         let named = |word: &'static str| move |id: &String| format!("{word} {id}");
@@ -115,7 +115,7 @@ impl Forms {
         }
     }
 
-    /// Value of every variable where the unknowns have these.
+    /// Value of every variable for these unknowns.
     pub fn values(&self, z: &[BigRational]) -> Vec<BigRational> {
         let whole = clear_denominators(&z.iter().cloned().chain([One::one()]).collect::<Vec<_>>());
         let value = |form: &Vec<BigRational>| product(&clear_denominators(form), &whole);
@@ -134,8 +134,8 @@ impl Forms {
             .collect()
     }
 
-    /// All signs but those of the slips and all that is zero in every answer, nothing decided yet; beside the state the
-    /// variable that was fixed last.
+    /// All signs but those of the slips and all that is zero in every answer, with no branch chosen yet; its state, and
+    /// the variable that was fixed last.
     pub(super) fn start(&self, go_on: &mut GoOn) -> (Polyhedron, (State, Option<usize>)) {
         let mut rows = WholeRows::default();
         self.forms.iter().for_each(|form| rows.push_rational(form));
@@ -217,7 +217,7 @@ fn frictionless(z_n: usize, x_n: usize) -> Vec<Branch> {
     vec![branch("closed", z_n), branch("open", x_n)]
 }
 
-/// The forms and branches of a pair that rubs; `bound` is f x_n + c, `tangential` λ along the tangents.
+/// The forms and branches of a pair with friction; `bound` is f x_n + c, `tangential` λ along the tangents.
 fn rubbing(
     made: &mut Forms,
     contact: &ProvedContact,

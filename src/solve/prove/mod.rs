@@ -42,9 +42,9 @@ pub const MOST_ROWS_OF_ALL: usize = 30;
 
 /// Time for the tree of all answers: numbers with many digits make each of its branches slow.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// What goes where all answers are too many.
+/// What is possible where all answers are too many.
 const ONE_ANSWER: &str = "`prove FILE.json` proves what stands";
-/// What goes where an answer is too large for a file.
+/// What is possible where an answer is too large for a file.
 const SIGNS: &str = "`check exact` tests its signs in rationals without writing them down";
 
 /// What is proved.
@@ -54,7 +54,7 @@ pub enum Claim {
     Answer(Vec<BigRational>),
     /// No contact forces balance the loads.
     Collapse(Collapse),
-    /// These are all answers; none: there is no answer.
+    /// These are all answers; where there are none, there is no answer.
     Answers(AllAnswers),
 }
 
@@ -84,7 +84,7 @@ fn refused<T>(text: impl Into<String>) -> Result<T, QuestionError> {
     Err(QuestionError::Refused(text.into()))
 }
 
-/// `instead`: what goes at this size.
+/// `instead`: what is possible at this size.
 fn too_many(what: &str, (found, most): (usize, usize), instead: &str) -> Result<(), QuestionError> {
     if found <= most {
         Ok(())
@@ -199,7 +199,7 @@ impl Prepared {
     }
 }
 
-/// Why the tree was given up after so many nodes and such a share of it.
+/// Why the tree was given up after this many nodes, with this share of it done.
 fn too_large(forms: &Forms, system: &ProvedSystem, (nodes, share): (usize, f64)) -> String {
     let unit = if matches!(system, ProvedSystem::Plain { .. }) { "rows" } else { "pairs" };
     let (count, branches) = (forms.groups.len(), forms.groups.iter().map(|group| group.branches.len()).max());

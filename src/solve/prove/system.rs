@@ -67,7 +67,8 @@ impl ProvedSystem {
 }
 
 impl ProvedContact {
-    /// Of a contact problem whose joints are independent; of a file with frictionless pairs its own matrix.
+    /// Of a contact problem whose joints are independent; for a file with frictionless pairs, with the file's own
+    /// matrix.
     pub fn of(problem: &ContactProblem, built: Built<'_>) -> ProvedContact {
         let system = &*problem.system;
         let m = system.pair_count();
@@ -137,8 +138,8 @@ fn kernel(problem: &ContactProblem, built: Built<'_>) -> Vec<DVector<f64>> {
     basis.iter().flat_map(|basis| basis.column_iter().map(|column| column.into_owned())).collect()
 }
 
-/// Joints that tell the motions, and the motions in which each of these moves one of them by 1 and no other. The joint
-/// of each motion is where it is largest, the first of such.
+/// Joints that tell the motions apart, and a basis in which each motion moves one of these joints by 1 and none of the
+/// others. The joint of a motion is the first at which it is largest.
 fn reduced(kernel: &[DVector<f64>]) -> (Vec<usize>, Vec<Vec<BigRational>>) {
     let mut telling: Vec<usize> = Vec::new();
     let mut motions: Vec<Vec<BigRational>> = Vec::new();
@@ -148,7 +149,7 @@ fn reduced(kernel: &[DVector<f64>]) -> (Vec<usize>, Vec<Vec<BigRational>>) {
             subtract(&mut motion, known, p);
         }
         let free = (0..motion.len()).filter(|joint| !telling.contains(joint));
-        // The last of equal ones would win.
+        // `max_by` takes the last of equal ones.
         let Some(p) = free.rev().max_by(|&a, &b| motion[a].abs().cmp(&motion[b].abs())) else { break };
         if motion[p].is_zero() {
             continue;
@@ -162,7 +163,7 @@ fn reduced(kernel: &[DVector<f64>]) -> (Vec<usize>, Vec<Vec<BigRational>>) {
     (telling, motions)
 }
 
-/// Takes as much of `other`, whose entry at `p` is 1, from `motion` as leaves nothing there.
+/// Subtracts the multiple of `other`, whose entry at `p` is 1, that leaves `motion` zero there.
 fn subtract(motion: &mut [BigRational], other: &[BigRational], p: usize) {
     let factor = motion[p].clone();
     if factor.is_zero() {

@@ -13,7 +13,7 @@ pub const MOST_NODES: usize = 5_000;
 
 /// After so many nodes …
 const LOOK: usize = 500;
-/// … a tree is given up of which so many times the most nodes would be needed, if it goes on like this.
+/// … a tree is given up if, at this rate, it would need this many times the most nodes.
 const HOPELESS: usize = 4;
 
 /// Factors of variables.
@@ -105,7 +105,7 @@ pub(super) fn contradiction(forms: &Forms, empty: &Polyhedron, pinned: Option<us
     unit.is_positive().then(|| sum.into_iter().map(|(variable, factor)| (variable, factor / &unit)).collect())
 }
 
-/// The same of Farkas' y over the rows of an LCP: w takes y, z what is left of it.
+/// The same from Farkas' y over the rows of an LCP: the factors are y for w and −Mᵀy for z.
 pub(super) fn of_farkas(forms: &Forms, weights: &[BigRational]) -> Sum {
     let n = forms.unknowns;
     let column = |j: usize| -> BigRational { forms.forms.iter().zip(weights).map(|(form, y)| &form[j] * y).sum() };
@@ -135,7 +135,7 @@ impl Search<'_> {
             State::Stopped => return Err(NoTree::Stopped),
             State::Empty => {
                 self.share += share;
-                // Whatever emptied it is a row that says so.
+                // What made it empty is a row: the contradiction itself.
                 return contradiction(self.forms, polyhedron, pinned).map(Tree::Cut).ok_or(NoTree::Stopped);
             }
             State::Feasible if !(self.progress)(self.nodes, self.share) => return Err(NoTree::Stopped),
