@@ -41,7 +41,7 @@ impl Breakpoint {
     }
 }
 
-/// The state of a pair as a path tells it: its word, and for an open pair held by cohesion what it does.
+/// The state of a pair as a path shows it: its word, and for an open pair held by cohesion what it does.
 fn word((state, held): (State, Option<State>)) -> String {
     match held {
         None => state.word().to_owned(),
@@ -72,7 +72,7 @@ pub fn between<'a>(
         .collect()
 }
 
-/// Adds where to pairs slip that begin to in space; `after` are the pairs from here on.
+/// Adds the directions of pairs that begin to slip in space; `after` are the pairs from here on.
 pub fn with_directions(changes: &mut [Change], after: &[PairState]) {
     for change in changes.iter_mut().filter(|change| change.to == State::Slip.word()) {
         // Friction stands against the slip.

@@ -38,7 +38,7 @@ pub(super) type Scheme = Vec<(State, Option<State>)>;
 /// The ray that the run on the finest polygon ended in, with its LCP and p.
 pub(super) type PolygonRay = Option<Box<(ContactLcp, RayDirection, f64)>>;
 
-/// Who takes steps.
+/// Takes the steps.
 pub(super) struct Stepper<'a> {
     /// Fewest facets of the polygon from whose answer Newton's method is started where no step before leads on.
     pub(super) facets: u16,
@@ -48,7 +48,7 @@ pub(super) struct Stepper<'a> {
 }
 
 impl<'a> Stepper<'a> {
-    /// Of a path that is followed with polygons of at least so many facets.
+    /// For a path that is followed with polygons of at least this many facets.
     pub(super) fn new(facets: u16, watch: &'a dyn Watch) -> Stepper<'a> {
         Stepper { facets: facets.max(FACETS), watch, pivots: Cell::new(0) }
     }

@@ -26,14 +26,13 @@ const SAME_NET: f64 = 1e-6;
 const FIRST: usize = 4;
 /// Cycles followed at most, where nothing else is said.
 pub const MOST: usize = 256;
-/// What goes in space in place of `from`: slips have a direction there.
 /// The bracket of the largest amplitude that shakes down is narrowed to this share of it.
 const NARROW: f64 = 1e-9;
 /// In space, where slips are known to the accuracy of the steps, to this one …
 const NARROW_IN_SPACE: f64 = 1e-5;
-/// … and by so many cycles at each amplitude: near the largest one they come to rest slowly.
+/// … by at most this many cycles at each amplitude: near the largest one they come to rest slowly.
 const MOST_IN_SPACE: usize = 64;
-/// The amplitude is doubled this often in search of one that does not.
+/// The amplitude is doubled at most this often in search of one that does not shake down.
 const DOUBLINGS: usize = 40;
 
 /// What repeated loading comes to.
@@ -52,7 +51,7 @@ pub enum Kind {
     Undecided,
 }
 
-/// Forces of starting slips over those of the loads: beyond, 10⁹ ε of the loads are rounding.
+/// Largest ratio of the forces of starting slips to those of the loads: beyond it, 10⁹ ε of the loads are rounding.
 const MOST_FORCE: f64 = 1e9;
 
 /// A slip of a pair.
@@ -90,7 +89,7 @@ pub struct Turn {
     /// The pairs.
     pub pairs: Vec<PairCycle>,
     /// The largest difference of a contact force or gap from the cycle before, as a share of the largest of its kind;
-    /// `None` of the first.
+    /// `None` for the first.
     pub difference: Option<f64>,
     /// Working schemes passed on the way there and back.
     pub schemes: usize,
@@ -362,7 +361,7 @@ fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -
     (kind, turns)
 }
 
-/// Where on its way a load ends that goes to and fro between these values.
+/// Where a load that goes to and fro between these values ends on its way.
 fn collapse_sentence(history: &History, (name, [a, b]): (&str, [f64; 2])) -> String {
     let HistoryEnd::Limit { stage, t, collapse } = &history.end else { return history.end_sentence() };
     let met = limit_words(collapse);
@@ -411,7 +410,7 @@ fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: (&str, [
     }
 }
 
-/// Why every further cycle is as the last.
+/// Why every further cycle is like the last.
 fn recurrence(turns: &[Turn], same: f64) -> String {
     let Some(last) = turns.last() else { return String::new() };
     let next = match last.repeated {
@@ -498,7 +497,7 @@ pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> R
         }
     }
     let every_start = static_limit(case, name, [from, beyond])?;
-    // What was followed in steps tells no more digits than these: the theorem does.
+    // What was followed in steps has no more digits than these; the theorem has.
     if let Some(proved) = every_start.0.filter(|proved| (good - proved).abs() <= narrow * (beyond - from).abs()) {
         good = proved;
     }

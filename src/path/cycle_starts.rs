@@ -1,12 +1,12 @@
-//! One load cycle after different slips: does it depend on the start what it comes to?
+//! One load cycle after different slips: does what it comes to depend on the start?
 //!
-//! Where slips press pairs on or off (R_nτ ≠ 0) it may. Besides no slips at all those are tried that go as far as they can:
-//! of each pair the largest and the least slip with which the structure stands still under the first load,
+//! Where slips press pairs on or off (R_nτ ≠ 0) it may. Besides no slips at all, slips that go as far as they can are
+//! tried: for each pair the largest and the least slip with which the structure stands still under the first load,
 //! ```text
 //!   max ± s_i   over   λ = R z + load,  x_n ≥ 0,  |x_τ| ≤ f x_n + c,   x_n = 0 ≤ z_n in pairs that are open without slips
 //! ```
-//! and at rest in the motions that cost no force. In space s_i is each component of the slip, and a polygon inside of Coulomb's
-//! disk stands for it.
+//! and at rest in the motions that cost no force. In space s_i is each component of the slip, and a polygon inside
+//! Coulomb's disk takes its place.
 
 use std::f64::consts::PI;
 
@@ -25,7 +25,7 @@ use crate::solve::Case;
 use crate::solve::problem::contact_problem;
 use crate::text::number::short;
 
-/// Facets of the polygon inside of the disk.
+/// Facets of the polygon inside the disk.
 const FACETS: u16 = 16;
 /// Pairs up to which each one's extreme slips are tried.
 pub const MOST_PAIRS: usize = 40;
@@ -154,7 +154,7 @@ fn close(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME * size)
 }
 
-/// Unit directions of slip, and the share of the bound within which the polygon that they make lies inside of the disk: in
+/// Unit directions of slip, and the share of the bound within which the polygon that they make lies inside the disk: in
 /// the plane ±t and all of it.
 fn directions(tangents: usize) -> (Vec<Vec<f64>>, f64) {
     if tangents < 2 {

@@ -39,7 +39,7 @@ pub struct Run {
     pub class: Option<RayClass>,
     /// What is proved of it.
     pub verdict: Option<Verdict>,
-    /// Whether it ended in an answer; in space the polygon's own answer is none on Coulomb's cone.
+    /// Whether it ended in an answer; in space the polygon's own answer does not count.
     #[serde(skip)]
     stands: bool,
 }

@@ -53,7 +53,8 @@ pub struct Found {
     pub notes: Vec<String>,
 }
 
-/// Which side of the wanted number: −1, 0, 1; for a word 1 where it is the one, −1 where not; `None` without a value.
+/// Which side of the wanted number: −1, 0, 1; for a word 1 where it is the wanted one, −1 where not; `None` without a
+/// value.
 fn side(wanted: &Wanted, value: Option<&Value>, size: f64) -> Option<i8> {
     match (wanted, value?) {
         (Wanted::Compared(_, wanted), Value::Number(found)) => {
@@ -125,7 +126,7 @@ fn on_route(route: &Route<'_>, range: [f64; 2], quantity: &Quantity, wanted: &Wa
             Shape::Curve(points) => {
                 let size = points.iter().fold(0.0, |size: f64, (_, f)| size.max(f.abs()));
                 let of = |f: f64| side(wanted, Some(&Value::Number(f)), size);
-                // What differs from the number by rounding is it.
+                // A value that differs from the number by rounding is equal to it.
                 let snapped = |f: f64| match wanted {
                     Wanted::Compared(_, level) if of(f) == Some(0) => Some(Value::Number(*level)),
                     _ => Some(Value::Number(f)),

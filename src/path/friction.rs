@@ -207,7 +207,7 @@ impl Follower<'_> {
         contact_problem(self.system, &self.factors, &self.values(value))
     }
 
-    /// d(numbers)/dθ at a value: an expression has another rate everywhere.
+    /// d(numbers)/dθ at a value: an expression has a different rate everywhere.
     fn rates(&self, value: f64) -> ContactProblem {
         problem_rates(self.case.prepared, self.system, &self.values(value), self.name, &[])
     }
@@ -324,7 +324,7 @@ impl Follower<'_> {
     /// `None` where there is no answer.
     fn beyond(&self, end: &Place, basis: &Basis, to: f64) -> Result<Option<Onward>, PathError> {
         let beside = self.beside(end.value, to);
-        // To first order a scheme may do that fails at once: then it is none.
+        // A scheme that holds to first order may fail at once: then it is not the next one.
         let holds = |place: &Place| place.margins.iter().all(|margin| *margin >= -1e-7);
         let next = self.scheme_beyond(end, basis).ok().filter(|next| next != basis);
         if let Some(next) = next.filter(|next| self.place(beside, next).is_some_and(|place| holds(&place))) {

@@ -10,13 +10,13 @@ pub const AXES: usize = 3;
 /// Points of a range without a count.
 pub const POINTS: usize = 11;
 
-/// A grid that cannot be.
+/// Why a grid cannot be made.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GridError {
     /// Not of the form expected.
     #[error("cannot read `{0}`: expected NAME=FROM:TO:STEP, e.g. f=0:1:0.05, or NAME=VALUE")]
     Form(String),
-    /// A number that is none.
+    /// A word that is not a number.
     #[error("`{word}` in `{whole}` is not a finite number")]
     Number {
         /// The word.
@@ -32,7 +32,7 @@ pub enum GridError {
     Unknown {
         /// As given.
         name: String,
-        /// What there is.
+        /// The parameters of the scenario.
         known: String,
     },
     /// A parameter twice, or too many.

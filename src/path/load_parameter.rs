@@ -38,8 +38,8 @@ pub struct DrivenCase {
 }
 
 impl LoadParameter {
-    /// Finds a case of this name, or the cases that depend on the parameter of this name. Where that stands in the loads
-    /// themselves, what they grow by makes cases of their own, and the geometry with those comes back too.
+    /// Finds a case of this name, or the cases that depend on the parameter of this name. Where that stands in the
+    /// loads themselves, what they grow by makes cases of its own, and the geometry with those is returned, too.
     ///
     /// # Errors
     /// An unknown name; a parameter that moves something else too, or a load in another way than a + b θ.
@@ -133,7 +133,7 @@ impl LoadParameter {
         Ok(Some(grown))
     }
 
-    /// Puts the factors of the cases to their values at θ.
+    /// Sets the factors of the cases to their values at θ.
     pub(super) fn drive(&self, factors: &mut [f64], value: f64) {
         for driven in &self.cases {
             factors[driven.case] = driven.offset + driven.rate * value;

@@ -36,7 +36,7 @@ struct Part {
 /// All shards of a sweep, in their order, each found whole and unaltered.
 pub struct Shards {
     parts: Vec<Part>,
-    /// The points that their headers tell.
+    /// The points that their headers state.
     grid: Grid,
 }
 
@@ -172,7 +172,7 @@ impl Shards {
     }
 }
 
-/// The grid that the header of a part tells, of as many points as it says.
+/// The grid that the header of a part states, with as many points as it says.
 fn grid_of(part: &Part) -> Result<Grid, SweepFileError> {
     let no = |why: String| SweepFileError::NoSweep { path: part.path.clone(), why };
     let Header { grid, points, drawn, .. } = &part.header;

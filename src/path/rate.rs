@@ -17,8 +17,9 @@ use crate::model::uses::Region;
 use crate::solve::Prepared;
 use crate::solve::problem::problem_by;
 
-/// d(problem)/dθ, factors of the load cases included, at these values for a parameter θ, with R and RF as they are; `growing`: of the last
-/// cases, which are what earlier ones grow by per unit of θ ([`LoadRates`](crate::solve::load_rates::LoadRates)), those.
+/// d(problem)/dθ, factors of the load cases included, at these values for a parameter θ, with R and RF as they are. The
+/// last cases are what earlier ones grow by per unit of θ ([`LoadRates`](crate::solve::load_rates::LoadRates));
+/// `growing`: the indices of these earlier ones.
 pub(crate) fn problem_rates(
     prepared: &Prepared,
     system: &Arc<ContactSystem>,

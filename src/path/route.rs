@@ -20,7 +20,7 @@ use crate::solve::error::SolveError;
 use crate::solve::problem::factors;
 use crate::solve::{Case, Solved};
 
-/// Finds an answer to start from, or tells by a word how the run ended without one.
+/// Finds an answer to start from, or gives the word for how the run ended without one.
 pub type Start<'s> = &'s dyn Fn(Case<'_>) -> Result<Result<Solved, &'static str>, SolveError>;
 
 /// A path from a start, with the scenario made ready there.
@@ -53,7 +53,7 @@ pub enum Known {
     AtPlaces,
 }
 
-/// What is to be said of an answer followed in steps.
+/// What is said of an answer followed in steps.
 pub const IN_STEPS: &str = "followed on Coulomb's cone in steps, each an answer that passed its check; that nothing else \
                             happens within a step is not proved";
 

@@ -95,8 +95,8 @@ pub struct Sensitivity {
     pub on_limit: Vec<String>,
 }
 
-/// Derivatives with respect to every parameter of the scenario that stands in laws, factors and amounts of loads only, in
-/// those linearly.
+/// Derivatives with respect to every parameter of the scenario that stands in laws, factors and amounts of loads only,
+/// in amounts linearly.
 ///
 /// # Errors
 /// Where there is no answer, or a bare LCP.

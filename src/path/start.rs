@@ -22,7 +22,7 @@ use crate::watch::Watch;
 /// No path makes more pivots than this.
 pub const PIVOTS: usize = 100_000;
 
-/// The contact system, for a command that knows two senses of slip only; `instead` says what goes in space.
+/// The contact system, for a command that knows two senses of slip only; `instead` says what is possible in space.
 ///
 /// # Errors
 /// A bare LCP; in space.
@@ -59,7 +59,7 @@ pub enum PathError {
     Unknown {
         /// As given.
         name: String,
-        /// What there is.
+        /// The load cases and parameters that can be followed.
         known: String,
     },
     /// A parameter that moves more than loads or more than friction.
@@ -70,7 +70,7 @@ pub enum PathError {
         /// What else it moves.
         why: String,
     },
-    /// A target that cannot be.
+    /// A target that cannot be reached for.
     #[error("{0}")]
     Target(String),
     /// The case, or the parameter of loads, does not act on any pair.

@@ -2,8 +2,8 @@
 //! every start if there are slips which, left behind once and for all, keep every pair short of its bound (Klarbring,
 //! Ciavarella & Barber 2007; Melan's theorem).
 //!
-//! With s̃ such slips, ½ (s − s̃)ᵀ R (s − s̃) falls at the rate (x̃_τ − x_τ) ṡ, which the least reserve under s̃ holds above
-//! that reserve times |ṡ|: so much slip in all, and no more. Where slips press pairs on (R_nτ ≠ 0) none of this holds.
+//! With s̃ such slips, ½ (s − s̃)ᵀ R (s − s̃) falls at the rate (x̃_τ − x_τ) ṡ, which is at least the least reserve
+//! under s̃ times |ṡ|: that bounds the slip in all. Where slips press pairs on (R_nτ ≠ 0) none of this holds.
 
 use nalgebra::DVector;
 
@@ -28,11 +28,11 @@ pub const MOST_PAIRS: usize = 500;
 /// What the theorem says of every start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Static {
-    /// There was nothing to ask it.
+    /// It was not asked.
     NotAsked,
     /// It does not hold here: why.
     Inapplicable(String),
-    /// So many pairs are too many to look.
+    /// This many pairs are too many to look.
     TooLarge(usize),
     /// No such slips were found.
     Nothing,
@@ -55,7 +55,7 @@ struct Search<'a> {
     problem: &'a ContactProblem,
     /// Every tangential joint.
     joints: Vec<usize>,
-    /// By what forces and displacements are divided in the programmes.
+    /// Forces and displacements are divided by these in the programmes.
     units: (f64, f64),
 }
 
@@ -132,8 +132,8 @@ impl Search<'_> {
         (program, one)
     }
 
-    /// Demands of the slips that no pair is beyond its bound at a place; what bounds and loads are there besides: `bound` and
-    /// `load` of the pair and of the joint, over the unit of force.
+    /// Demands that, with the slips, no pair is beyond its bound at a place; `bound` of a pair (from its bound there)
+    /// and `load` of a joint are terms over the unit of force.
     fn demand(
         &self,
         program: &mut LinearProgram,

@@ -1,5 +1,5 @@
-//! A sweep: the answer at every point of a grid, one row each, in the order of the grid whatever the number of
-//! threads. Each row tells what a cold run finds at its point, whichever way it was found ([`super::sweep_points`]).
+//! A sweep: the answer at every point of a grid, one row each, in the order of the grid whatever the number of threads.
+//! Each row has what a cold run finds at its point, whichever way it was found ([`super::sweep_points`]).
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -155,7 +155,7 @@ impl Sweep<'_> {
         self.header().columns()
     }
 
-    /// The fields of the parameters, by which a row is known again.
+    /// The fields of the parameters, by which a row is recognized.
     pub fn key(&self, index: usize) -> String {
         key(self.grid, self.format, index)
     }
@@ -231,7 +231,7 @@ fn checksum(hash: &str, index: usize, body: &str) -> String {
     Hash::of(hash).and(format!(" {index} ").as_bytes()).and(body.as_bytes()).short()
 }
 
-/// Between the other fields of a row and its checksum.
+/// What stands between the other fields of a row and its checksum.
 fn before_sum(format: Format) -> &'static str {
     match format {
         Format::Csv => ",",
@@ -239,7 +239,7 @@ fn before_sum(format: Format) -> &'static str {
     }
 }
 
-/// From the checksum of a row to its end.
+/// What stands between the checksum of a row and its end.
 fn after_sum(format: Format) -> &'static str {
     match format {
         Format::Csv => "\n",

@@ -26,7 +26,7 @@ pub enum SweepFileError {
     /// The file is there already.
     #[error("{0} is there already: continue it with --resume, or remove it")]
     Exists(PathBuf),
-    /// The file is none of a sweep.
+    /// The file is not that of a sweep.
     #[error("{path} is not a file of a sweep: {why}")]
     NoSweep {
         /// The file.

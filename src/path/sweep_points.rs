@@ -22,7 +22,7 @@ use crate::watch::Watch;
 
 /// Points of a block.
 const BLOCK: usize = 16;
-/// Answers whose equilibrium is looked at together.
+/// Answers whose equilibrium is checked together.
 const TOGETHER: usize = 8;
 /// A proof that the answers are unique takes as long as some twenty cold runs: it is looked for in a grid of this many points.
 const MANY: usize = 64;
@@ -30,7 +30,7 @@ const MANY: usize = 64;
 /// On the way to [`Found`].
 enum Looked {
     Found(Found),
-    /// The equilibrium of the answer is still to be looked at.
+    /// The equilibrium of the answer is still to be checked.
     Left(Box<(Answer, Unbalanced, bool)>),
 }
 
@@ -164,7 +164,8 @@ impl<'s> Points<'s> {
         }
     }
 
-    /// With the equilibrium of all answers looked at; where it fails the answer is looked for again as any other is.
+    /// What was found, with the equilibrium of all answers checked; where it fails, the answer is looked for again like
+    /// any other.
     fn balanced(&self, wanted: Range<usize>, looked: Vec<Looked>, watch: &dyn Watch) -> Vec<Found> {
         let left: Vec<&Unbalanced> = looked
             .iter()
@@ -186,8 +187,8 @@ impl<'s> Points<'s> {
     }
 }
 
-/// The usual fields of an answer. Where answers may follow one another none tells pivots, not even the one that was solved
-/// cold: where that is must not show.
+/// The usual fields of an answer. Where answers may follow one another, no row states pivots, not even that of the one
+/// solved cold: which one that is must not show.
 fn row(answer: &Answer, unique: bool) -> Found {
     let mut fields = fields(answer);
     if let Some(pivots) = COLUMNS.iter().position(|name| unique && *name == "pivots") {

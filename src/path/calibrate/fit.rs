@@ -38,12 +38,12 @@ pub(super) struct Along {
 }
 
 impl Along {
-    /// From where to where around a value it is as good as there, to what measuring could tell.
+    /// The range around a value over which it is as good as there, as far as measuring could tell.
     pub(super) fn as_good(&self, at: f64, squares: f64, size: f64) -> [f64; 2] {
         self.around(at, squares * (1.0 + AS_GOOD) + self.rounding(size))
     }
 
-    /// From where to where around a value it is the same as there, to rounding.
+    /// The range around a value over which it is the same as there, to rounding.
     pub(super) fn level(&self, at: f64, squares: f64, size: f64) -> [f64; 2] {
         self.around(at, squares * (1.0 + ROUNDING) + self.rounding(size))
     }
@@ -54,7 +54,7 @@ impl Along {
         ROUNDING.powi(2) * (size * size + most)
     }
 
-    /// From where to where around a value no more than a sum of squares was found.
+    /// The range around a value over which the sum of squares was found to be no more than `most`.
     fn around(&self, at: f64, most: f64) -> [f64; 2] {
         let good = |(_, found): &&(f64, f64)| *found <= most;
         let from = self.points.iter().rev().skip_while(|(value, _)| *value > at).take_while(good).last();
@@ -136,7 +136,7 @@ impl Model<'_> {
 
     /// The sum of squares over one friction alone on its exact path; `None` where none leads over it.
     pub(super) fn along(&self, at: &[f64], group: usize) -> Result<Option<Along>, PathError> {
-        // In space slips turn, and no exact path leads over friction: its rates and answers of their own do.
+        // In space slips turn, and no exact path leads over friction: rates and answers of their own have to do.
         if self.case.prepared.system().is_some_and(|system| system.is_in_space()) {
             return Ok(None);
         }
@@ -158,7 +158,7 @@ impl Model<'_> {
             let squares = |value: f64| -> Option<f64> {
                 let values = route.with_facts(stretch, value, |facts| self.read(facts))?.ok()?;
                 let squares = self.residuals(&values).norm_squared();
-                // Of measurements that are met what is left is rounding, and no curve.
+                // Where the measurements are met, what is left is rounding, not a curve.
                 Some(if squares <= (ROUNDING * self.size()).powi(2) { 0.0 } else { squares })
             };
             points.extend(curve_of(&squares, stretch).unwrap_or_default());
@@ -172,7 +172,7 @@ impl Model<'_> {
     }
 }
 
-/// The points above which all lies on both sides, up to rounding; of a level stretch one.
+/// The local minima, up to rounding; one for each level stretch.
 fn least_nearby(points: &[(f64, f64)], rounding: f64) -> Vec<(f64, f64)> {
     let level = |a: f64, b: f64| (a - b).abs() <= rounding + ROUNDING * a.max(b);
     let mut minima = Vec::new();

@@ -22,15 +22,15 @@ use crate::text::number::short;
 use fit::{Along, BLIND, Fit};
 use model::Model;
 
-/// A stretch of a friction over which the measurements tell nothing is one from this share of its range on.
+/// A stretch of a friction over which the measurements tell nothing counts from this share of its range on.
 const LEVEL: f64 = 1e-6;
-/// Minima of one friction that are gone downhill from.
+/// Minima over one friction from which descents start.
 const MINIMA: usize = 12;
 /// Rounds of each friction alone after the descents.
 const ROUNDS: usize = 3;
 /// Below this share of the measured values slopes by differences are rounding.
 const DIFFERENCES: f64 = 1e-6;
-/// Groups of which every corner of the box is a start.
+/// Groups up to which there is a start towards every corner of the box.
 const CORNERS: usize = 3;
 
 /// What was found of one friction.
@@ -40,7 +40,7 @@ pub struct Group {
     pub parameter: String,
     /// Its value.
     pub value: f64,
-    /// Standard error; `None` where nothing tells it.
+    /// Standard error; `None` where nothing determines it.
     pub standard_error: Option<f64>,
     /// Whether it stands at an end of its range, or of its path: beyond there may be a better one.
     pub at_end: bool,
@@ -50,11 +50,11 @@ pub struct Group {
     pub interval: Option<[f64; 2]>,
     /// Why they do not.
     pub why: Option<String>,
-    /// Its pairs that are open, stick, slip.
+    /// How many of its pairs are open.
     pub open: usize,
-    /// See there.
+    /// How many stick.
     pub stick: usize,
-    /// See there.
+    /// How many slip.
     pub slip: usize,
 }
 
@@ -231,7 +231,7 @@ impl Model<'_> {
         )))
     }
 
-    /// `followed`: the range of the only friction that its path leads over, none where the least is one nearby.
+    /// `followed`: the range of the only friction that its path leads over, none where the minimum is a local one.
     fn told(
         &self,
         best: &Fit,
@@ -254,7 +254,7 @@ impl Model<'_> {
             (group.parameter, group.value) = (name.clone(), best.at[k]);
             group.at_end = std::iter::once(range).chain(followed).any(|ends| ends.contains(&best.at[k]));
             match why(k) {
-                // At an end the sum of squares slopes: nothing says how far the least would be off.
+                // At an end the sum of squares slopes: nothing says how far off the minimum would be.
                 None if group.at_end => {}
                 None => {
                     let [low, high] = *range;
@@ -356,7 +356,7 @@ impl Seen {
             (0..count).map(|k| (scaled.column(k).norm() <= floor).then_some(Blind::Alone)).collect();
         let shown: Vec<usize> = (0..count).filter(|&k| why[k].is_none()).collect();
         let mut variance = vec![0.0; count];
-        // Each column to length 1, so that one dull measurement does not look like a combination.
+        // Each column to length 1, so that a friction of little effect does not look like a combination.
         let columns: Vec<_> = shown.iter().map(|&k| scaled.column(k).normalize()).collect();
         if columns.is_empty() {
             return Seen { why, variance };

@@ -45,7 +45,7 @@ impl Model<'_> {
         self.case.at_all(&settings)
     }
 
-    /// Their values; why there are none.
+    /// Their values, or why there are none.
     pub(super) fn look(&self, at: &[f64]) -> Result<Result<Look, String>, PathError> {
         if self.case.watch.stop() {
             return Err(PathError::Interrupted);
@@ -148,7 +148,7 @@ impl Model<'_> {
         Ok(DVector::from_fn(after.len(), |i, _| (after[i] - here.values[i]) / step))
     }
 
-    /// From answers of their own on both sides, on one where the other has none.
+    /// From answers of their own on both sides, or on one where the other has none.
     fn difference(&self, at: &[f64], here: &Look, group: usize) -> Result<DVector<f64>, PathError> {
         let [low, high] = self.groups[group].1;
         let step = STEP * at[group].abs().max(1e-3 * (high - low));
@@ -168,7 +168,7 @@ impl Model<'_> {
     }
 }
 
-/// Whether the rates of displacements and forces tell its own.
+/// Whether its rate follows from those of displacements and forces.
 fn is_of_rates(quantity: &Quantity) -> bool {
     let word = quantity.word();
     !(word == "bound" || word.starts_with("reserve"))

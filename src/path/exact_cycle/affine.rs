@@ -13,7 +13,7 @@ use crate::lcp::problem::NOISE;
 /// Squarings of the map in search of a contraction: up to 2⁶ cycles.
 const SQUARINGS: u32 = 6;
 
-/// A wish of which others leave no more than this share is one of theirs, but for the rounding of R.
+/// A wish of which the other equations leave no more than this share depends on them, but for the rounding of R.
 const DEPENDENT: f64 = 1e-9;
 
 /// A number that depends on the slips at the beginning: coefficients, the constant last.
@@ -264,8 +264,8 @@ impl<'a> Maker<'_, 'a> {
         Ok(())
     }
 
-    /// Goes on through events that coincide in f64, in the order in which they come here, to the scheme behind them. Whether
-    /// the half goes on behind them: what comes at its end in f64 may be beyond it.
+    /// Goes on through events that coincide in f64, in the order in which they come here, to the scheme behind them.
+    /// Whether the half goes on behind them: an event at its end in f64 may lie beyond it.
     fn pass(&mut self, now: &mut Stretch<'a>, next: &Way, mut left: Vec<Event>) -> Result<bool, Refused> {
         while !left.is_empty() {
             let mut ends = Vec::new();

@@ -38,7 +38,7 @@ const NEAR: f64 = 1e-9;
 pub enum Repetition {
     /// There was nothing to prove: no cycle repeats.
     NotAsked,
-    /// So many pairs are too many, or so many working schemes.
+    /// This many pairs, or working schemes, are too many.
     TooLarge { pairs: usize, schemes: usize },
     /// Not proved: why.
     Unproved(String),

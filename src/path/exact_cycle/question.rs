@@ -18,7 +18,7 @@ pub(super) const SECONDS: u64 = 10;
 pub enum SlipMap {
     /// Slips come back as they were.
     Identical,
-    /// Differences of slips shrink to at most this share, in the largest of them, within so many cycles.
+    /// Differences of slips shrink to at most this share, in the largest of them, within this many cycles.
     Contracting { share: f64, cycles: u32 },
     /// Neither is proved.
     Open,

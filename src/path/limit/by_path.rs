@@ -15,7 +15,7 @@ use crate::solve::{Case, Prepared};
 /// What the end of a path says of the limit.
 pub(super) fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, PathError> {
     let present = path.parameter.present;
-    // Beside the present value a limit of rounding is one of 0.
+    // A limit that is rounding beside the present value is 0.
     let factor = path.limit().map(|factor| if factor.abs() <= NOISE * present.abs() { 0.0 } else { factor });
     let safety = factor.filter(|_| present != 0.0).map(|factor| factor / present);
     let mut limit = Limit {

@@ -7,7 +7,7 @@ use crate::path::load_parameter::LoadParameter;
 use crate::path::start::PathError;
 use crate::solve::Case;
 
-/// The load is increased by so many times the increase before it …
+/// Each increase of the load is this many times the one before it …
 const GROWTH: f64 = 4.0;
 /// … up to this multiple of its present size.
 const MOST: f64 = 1e9;

@@ -29,7 +29,7 @@ pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limi
     if found.lost { bracketed(case, name, found) } else { Ok(found) }
 }
 
-/// The limit by runs of their own, where the path led on beyond it for rounding only: an answer on one side, a proved
+/// The limit by runs of their own, where the path led on beyond it only by rounding: an answer on one side, a proved
 /// collapse on the other.
 fn bracketed(case: Case<'_>, name: &str, found: Limit) -> Result<Limit, PathError> {
     let Some(start) = found.path.as_ref().map(|path| path.start) else { return Ok(found) };

@@ -34,8 +34,8 @@ pub struct Limit {
     pub confirmed: bool,
     /// A factor just beyond the end of the path at which there is an answer all the same: that end is no limit.
     pub beyond: Option<f64>,
-    /// Where no answer was found just before the end of the path, so that it may have led on for rounding only: the runs of
-    /// their own between which the limit lies, one with an answer, one with a proof that there is none.
+    /// Where no answer was found just before the end of the path, so that it may have led on only by rounding: the runs
+    /// of their own between which the limit lies, one with an answer, one with a proof that there is none.
     pub bracket: Option<[f64; 2]>,
     /// Whether no answer was found just before the end of the path.
     pub(super) lost: bool,
@@ -165,7 +165,7 @@ pub(super) fn beside(
     value: f64,
 ) -> Result<(Prepared, Vec<f64>), PathError> {
     if moves_loads {
-        // Where the parameter stands in the loads themselves they are told as they are there.
+        // Where the parameter stands in the loads themselves, they are read anew at this value.
         let there = case.at(&parameter.name, value)?;
         let factors = factors(&there.prepared, &there.values);
         return Ok((there.prepared.with_factors(&factors), factors));

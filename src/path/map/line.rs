@@ -13,17 +13,17 @@ use crate::watch::StopOnly;
 const PROBES: [f64; 3] = [0.25, 0.625, 1.0];
 /// Where an answer is looked for between two ends without one.
 const BETWEEN: [f64; 3] = [0.5, 0.25, 0.75];
-/// The first place is so near to the end of the path, as a share of the range.
+/// The first such place is this near to the end of the path, as a share of the range.
 const BESIDE: f64 = 1e-9;
-/// So often a path may begin again behind the end of another.
+/// How often a path may begin again behind the end of another.
 const AGAIN: usize = 8;
 /// Intervals of a line over a parameter without an exact path.
 const CELLS: usize = 24;
-/// There a change is narrowed to this share of the range.
+/// On such a line a change is narrowed to this share of the range.
 const NARROW: f64 = 1e-11;
 /// Bounds met upwards and downwards that are nearer than this share of the range are one place …
 const SAME: f64 = 1e-10;
-/// … where they are found in steps than this one, since a margin that is passed flatly fixes its place badly.
+/// … or than this one where they are found in steps, since a margin that is crossed flatly fixes its place badly.
 const SAME_IN_STEPS: f64 = 1e-6;
 /// Parts shorter than this share of the range are rounding of the place where two others meet.
 const NOTHING: f64 = 1e-13;
@@ -212,8 +212,8 @@ impl<'a> Lines<'a> {
         self.range[1] - self.range[0]
     }
 
-    /// Fills a range with parts: along the path where there is an answer, and where that ends again from another answer, if
-    /// one is found, so many times. How well they are known.
+    /// Fills a range with parts: along the path where there is an answer and, where that ends, from another answer if
+    /// one is found, at most `again` times. Returns how well they are known.
     fn fill(
         &self,
         case: Case<'_>,

@@ -30,11 +30,11 @@ use crate::solve::error::QuestionError;
 use crate::solve::line::Proofs;
 use crate::watch::StopOnly;
 
-/// Other answers are looked for in maps of at most so many pairs …
+/// Other answers are looked for in maps of at most this many pairs …
 const ENUMERATED_PAIRS: usize = 8;
-/// … and so many regions.
+/// … and this many regions.
 const ENUMERATED_REGIONS: usize = 64;
-/// All answers at the upper end of each line are looked for in maps of at most so many pairs.
+/// All answers at the upper end of each line are looked for in maps of at most this many pairs.
 const ENUMERATED_ENDS: usize = 4;
 
 /// A region: one scheme, connected.
@@ -103,7 +103,7 @@ impl Map {
         self.region_of[panel].get(part).copied()
     }
 
-    /// The place at so much along the lines and across them, in the order of the axes.
+    /// The place at these values along the lines and across them, in the order of the axes.
     pub fn place(&self, along: f64, across: f64) -> [f64; 2] {
         if self.along == 0 { [along, across] } else { [across, along] }
     }
@@ -163,7 +163,7 @@ fn along(case: Case<'_>, axes: &[Axis; 2]) -> Result<usize, PathError> {
     Ok(best.0)
 }
 
-/// Whether pairs slip in a plane of directions: all answers could be told of a polygon only.
+/// Whether pairs slip in a plane of directions: all answers could be found for a polygon only.
 fn is_in_space(case: Case<'_>) -> bool {
     case.prepared.system().is_some_and(|system| system.is_in_space())
 }

@@ -10,7 +10,7 @@ use crate::path::start::PathError;
 use crate::solve::known_collapses::KnownCollapses;
 use crate::text::words::short;
 
-/// A line without an answer at its ends is looked at in so many places where its neighbours have one.
+/// A line without an answer at its ends is looked at in this many places where its neighbours have one.
 const HINTS: usize = 4;
 /// Strips looked at first.
 const STRIPS: usize = 16;
@@ -155,7 +155,7 @@ pub struct Cutter<'a> {
 pub enum LeftOut {
     /// It was stopped.
     Stopped,
-    /// So many lines did not tell its regions apart.
+    /// The most lines did not tell its regions apart.
     Intricate,
 }
 
@@ -186,7 +186,7 @@ impl<'a> Cutter<'a> {
         for found in found {
             let (line, known, collapses) = found?;
             self.known = self.known.max(known);
-            // The last one's at the end, on however many threads.
+            // In the end those of the last line, whatever the number of threads.
             lines.known.become_as(&collapses);
             self.seen.push(line);
         }
@@ -283,8 +283,8 @@ impl<'a> Cutter<'a> {
         Ok(())
     }
 
-    /// Places on [0, 1] with the weights of Kronrod's rule and of Gauss's. Bounds that come from steps are round: at the ends
-    /// of a strip their distance is like a root, which x = sin²(π s/2) makes smooth.
+    /// Places on [0, 1] with the weights of Kronrod's rule and of Gauss's. Bounds that come from steps are round: at
+    /// the ends of a strip their distance goes like a square root, which x = sin²(π s/2) makes smooth.
     fn nodes(&self) -> Vec<(f64, f64, f64)> {
         let node = |k: usize| {
             let (half, sign) = if k < 8 { (k, -1.0) } else { (14 - k, 1.0) };

@@ -37,7 +37,7 @@ fn connected(panels: &[Panel], range: [f64; 2]) -> Vec<Vec<usize>> {
     panels.iter().map(|panel| numbers.by_ref().take(panel.areas.len()).collect()).collect()
 }
 
-/// The same without those of at most so much area: each of their parts goes to what lies nearest.
+/// The same without those of at most this area: each of their parts goes to what lies nearest.
 fn merged(panels: &[Panel], regions: Vec<Vec<usize>>, least: f64) -> Vec<Vec<usize>> {
     let count = regions.iter().flatten().max().map_or(0, |last| last + 1);
     let mut areas = vec![0.0; count];

@@ -41,7 +41,7 @@ const GROWTH: f64 = 1.5;
 const MOST: f64 = 1e9;
 /// A breakpoint is located to this share of the range.
 const HERE: f64 = 1e-12;
-/// No answer near so close ahead is none at all.
+/// Where no answer is near even this close ahead, there is none.
 const CLOSE: f64 = 1e-9;
 /// Where none is near, another answer, or a certified collapse, is looked for this share of the range further on.
 const BEYOND: f64 = 1e-7;
@@ -262,7 +262,8 @@ impl Path<'_> {
                 };
                 continue;
             }
-            // How far z goes within a step: where a slip begins or ends nothing but what was left of it stands beside the place.
+            // The size of z within the whole step: next to the place where a slip begins or ends, only a remainder of
+            // it is seen.
             let size = next.as_ref().map_or(0.0, |next| next.step.z.amax()).max(here.step.z.amax());
             let (last, next) = match next {
                 Some(next) => self.narrowed(&stepper, here, next)?,
@@ -290,7 +291,7 @@ impl Path<'_> {
         Ok(path)
     }
 
-    /// Tells how far it is, and whether it may go on.
+    /// Reports how far it is; whether it may go on.
     fn goes_on(&self, aim: &Aim, here: &Stand, path: &ConePath) -> Result<(), PathError> {
         let value = here.value();
         let fraction = if aim.target.is_some() { (value - aim.start).abs() / aim.size } else { 0.0 };
@@ -372,7 +373,7 @@ impl Path<'_> {
     }
 }
 
-/// Tells what changes between two places, and adds the second.
+/// Records what changes between two places, and adds the second.
 fn change(path: &mut ConePath, before: &Stand, after: &Stand, jump: bool) {
     let there = &after.place;
     let ids = there.pairs.iter().map(|pair| pair.id.as_str());
@@ -396,8 +397,8 @@ fn guess(before: Option<&Stand>, here: &Stand, to: f64) -> DVector<f64> {
     &here.step.z + (&here.step.z - &before.step.z) * share
 }
 
-/// A pair that comes to rest at a breakpoint has there the slip that it keeps, and one that closes no gap: what is found of
-/// them just before it comes of the digits to which the place is located.
+/// At a breakpoint a pair that comes to rest has the slip that it keeps, and one that closes has no gap: what is found
+/// just before differs only because the place is located to so many digits.
 fn settle(before: &mut PairState, after: &PairState) {
     if (before.state, after.state) == (State::Slip, State::Stick) {
         before.z_t = after.z_t;

@@ -78,7 +78,7 @@ impl<'a> Path<'a> {
         Ok(contact_problem(system, &factors, &values).under(self.case.rules))
     }
 
-    /// The factors that are told of a place; none on a path over friction.
+    /// The factors that are recorded for a place; none on a path over friction.
     pub(super) fn told_factors(&self, value: f64) -> Vec<f64> {
         if self.over.is_friction() {
             return Vec::new();

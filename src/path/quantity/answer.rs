@@ -1,4 +1,4 @@
-//! Of the answer as a whole.
+//! Quantities of the answer as a whole.
 
 use super::facts::Facts;
 use super::value::{NoValue, Value, none};

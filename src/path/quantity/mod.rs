@@ -1,4 +1,4 @@
-//! The values of quantities: of an answer, of a pivot, of a place on a path. One file a family of the words of
+//! The values of quantities: of an answer, of a pivot, of a place on a path. One file for each family of the words of
 //! [`crate::model::quantity`]; each match is exhaustive, so that a new word is refused until it has its reader.
 
 mod answer;

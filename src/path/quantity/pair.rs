@@ -7,7 +7,7 @@ use crate::answer::rounding::balance;
 use crate::model::quantity::{OfPair, Over, fits};
 
 impl OfPair {
-    /// Of a pair, in the unit and with the sign of the field of [`PairState`]; not a number where it has none.
+    /// Of a pair, in the unit and with the sign of the field of [`PairState`]; NaN where it has none.
     pub fn of(self, pair: &PairState) -> f64 {
         let component =
             |of: fn(&InSpace) -> [f64; 2], along: usize| pair.space.map_or(f64::NAN, |space| of(&space)[along]);

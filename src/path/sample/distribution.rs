@@ -9,7 +9,7 @@ use crate::text::number::in_full;
 /// A law of distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
-    /// Between two values, all alike.
+    /// Between two values, all equally likely.
     Uniform { low: f64, high: f64 },
     /// Gauss's, by mean and standard deviation.
     Normal { mean: f64, deviation: f64 },
@@ -178,7 +178,7 @@ impl Distribution {
         Some([self.least.map_or(low, |least| low.max(least)), high])
     }
 
-    /// Whether all values between its ends are alike.
+    /// Whether all values between its ends are equally likely.
     pub fn is_uniform(&self) -> bool {
         matches!(self.law, Law::Uniform { .. })
     }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::distribution::{Distribution, normal_quantile, normal_share};
 
-/// Share of the draws that is still made as the parameters are distributed where the others are moved: no weight is
+/// Share of the draws that still follow the distributions of the parameters where the others are moved: no weight is
 /// greater than 1 over this.
 const UNMOVED: f64 = 0.1;
 
@@ -27,7 +27,7 @@ impl fmt::Display for Variable {
     }
 }
 
-/// How points are drawn, as the header of a file tells it.
+/// How points are drawn, as the header of a file states it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rule {
     /// Two draws of one seed are the same.

@@ -15,13 +15,13 @@ use crate::path::start::PathError;
 use crate::solve::Case;
 use crate::text::number::short;
 
-/// A law without an end is followed as far as this share of it on each side.
+/// A law without an end is followed until this share of it is left on each side.
 const TAIL: f64 = 1e-9;
 /// Places of a part without an answer at which that is proved, as shares of its length.
 const PROVED_AT: [f64; 3] = [0.01, 0.5, 0.99];
-/// Halvings that a quantile is found by.
+/// Halvings by which a quantile is found.
 const HALVINGS: usize = 60;
-/// Parts are as long as those of the answer up to this share of the range.
+/// Two lengths are the same up to this share of the range.
 const SAME: f64 = 1e-9;
 
 /// Gauss's rule of 5 places on [−1, 1].

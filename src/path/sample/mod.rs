@@ -36,7 +36,7 @@ pub const MOST_SHOWN: usize = 200_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     pub variables: Vec<Variable>,
-    /// How many points; `None`: none where exact results do, else [`DRAWS`].
+    /// How many points; `None`: none where exact results suffice, else [`DRAWS`].
     pub count: Option<usize>,
     pub seed: u64,
     pub quantities: Vec<Quantity>,
@@ -142,7 +142,7 @@ impl Request {
     }
 }
 
-/// The quantities asked for behind the verdict, which tells a collapse from what is undecided.
+/// The quantities asked for, after the verdict, which tells a collapse from what is undecided.
 pub fn with_verdict(quantities: &[Quantity]) -> Vec<Quantity> {
     std::iter::once(Quantity::Answer(OfAnswer::Verdict)).chain(quantities.iter().cloned()).collect()
 }
@@ -155,7 +155,7 @@ struct Sampler<'a> {
 }
 
 impl Sampler<'_> {
-    /// Those that were ready where somebody stopped it.
+    /// The draws; those that were ready where it was stopped.
     fn run(&self) -> Result<Vec<Drawn>, PathError> {
         let grid = Grid::of_draw(self.draw.clone());
         let sweep = Sweep {
@@ -230,7 +230,7 @@ pub fn of_file(sweep: &Sweep<'_>, path: &std::path::Path) -> std::io::Result<Vec
     Ok(read(&mut reader, sweep.grid, sweep.format, &sweep.columns()))
 }
 
-/// Samples: exactly where one parameter is followed, or the map of two tells it, else by draws.
+/// Samples: exactly where one parameter is followed, or the map of two shows it, else by draws.
 ///
 /// # Errors
 /// An interruption; a value that the scenario cannot take.
@@ -244,7 +244,7 @@ pub fn sample(case: Case<'_>, request: &Request) -> Result<Sampled, PathError> {
         };
         exact = match found {
             Err(PathError::Interrupted) => return Err(PathError::Interrupted),
-            // Values without a model, or paths that break down: drawn points tell what they can.
+            // Values without a model, or paths that break down: drawn points show what they can.
             found => found.ok().flatten(),
         };
     }
@@ -252,7 +252,7 @@ pub fn sample(case: Case<'_>, request: &Request) -> Result<Sampled, PathError> {
         Some(found) if found.quantities.len() == request.quantities.len() => return Ok(found),
         other => other,
     };
-    // Draws near the limit would tell the quantities badly where the collapse is known.
+    // Draws near the limit would estimate the quantities badly where the collapse is known.
     let (draw, near) = match exact {
         Some(_) => Request { crude: true, ..request.clone() }.draw(case)?,
         None => request.draw(case)?,

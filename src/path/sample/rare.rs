@@ -16,7 +16,7 @@ use crate::solve::case::There;
 
 /// Draws that tell whether collapse is rare …
 const PILOT: usize = 200;
-/// … which it is with fewer than so many collapses among them.
+/// … which it is with fewer than this many collapses among them.
 const FEW: usize = 4;
 /// Of another seed than the draws themselves.
 const PILOT_SEED: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -88,7 +88,7 @@ pub fn centre(case: Case<'_>, draw: &Draw) -> Result<Option<Centre>, PathError> 
         }
     }
     let near = safety(&place)?.is_some_and(|safety| (safety - 1.0).abs() < NEAR);
-    // As short as they can be told: the header of a file has them.
+    // Rounded, since the header of a file states them.
     let place = place.into_iter().map(|u| (u * 1e6).round() / 1e6).collect();
     Ok(near.then_some(Centre { place, load }))
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-/// Quantiles that are told.
+/// Quantiles that are reported.
 pub const QUANTILES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
 /// Bars of a histogram.
 pub const BARS: usize = 12;
@@ -22,7 +22,7 @@ pub enum Found {
 /// A drawn point that was solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
-    /// With which it counts; their mean is near 1.
+    /// The weight with which it counts; the mean of all weights is near 1.
     pub weight: f64,
     pub found: Found,
     /// The quantities, null where they have no value.

@@ -20,7 +20,7 @@ const CERTIFIED_AT: f64 = 1e-6;
 /// Where no rates lead on, states are looked for these parts of a stage further on: a stiffness near to singular, and
 /// displacements far out, may hide the nearest in their rounding.
 const BEYOND: [f64; 3] = [1e-9, 1e-8, 1e-7];
-/// A look so many times as far ahead …
+/// A look this many times as far ahead …
 const FARTHER: f64 = 16.0;
 /// … shows less than this many times the motion where it is a jump.
 const STAYS: f64 = 4.0;

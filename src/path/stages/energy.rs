@@ -44,7 +44,7 @@ pub(super) fn balance(prepared: &Prepared, problem: &ContactProblem, history: &m
                 let step = match &moment.curve {
                     None => straight,
                     Some(curve) => {
-                        // Half of the way to the mean of u and on adds half of what the curve adds.
+                        // The broken line by way of the mean state adds half of what the curve adds.
                         let factors = last.factors.iter().zip(&moment.factors).map(|(a, b)| 0.5 * (a + b));
                         let factors: Vec<f64> = factors.collect();
                         let bent = problem.dislocation(&curve.z);

@@ -53,7 +53,7 @@ pub(super) type Targets<'t> = (&'t [Vec<f64>], &'t mut dyn FnMut(&[StageResult])
 /// Where a stage ends in a limit: the place in it and the collapse.
 pub(super) type Limit = Option<(f64, Ray)>;
 
-/// One who follows a history.
+/// What follows a history.
 pub(super) trait Follower<'a> {
     /// Where it stands.
     fn place(&self) -> &Place<'a>;

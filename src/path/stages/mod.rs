@@ -68,8 +68,8 @@ pub fn follow(case: Case<'_>) -> Result<History, PathError> {
 pub enum Begin {
     /// At the unloaded structure.
     Unloaded,
-    /// Under the first factors, with slips of the pairs, along t or along t1 and t2, that something before has left behind: the
-    /// first stage is the standing there.
+    /// Under the first factors, with slips of the pairs, along t or along t1 and t2, that something before has left
+    /// behind: the first stage is the state there.
     Slips(Vec<[f64; 2]>),
 }
 

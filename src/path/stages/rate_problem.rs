@@ -27,7 +27,7 @@ use crate::model::rules::TieBreak;
 use crate::solve::engines::run_scheme;
 use crate::watch::Watch;
 
-/// Rate problems with at most so many rows are searched basis by basis where Lemke's algorithm ends in a ray.
+/// Rate problems with at most this many rows are searched basis by basis where Lemke's algorithm ends in a ray.
 const SEARCHED_ROWS: usize = 14;
 
 /// The rounding of a basis found by search stays below this part of the load's rate.

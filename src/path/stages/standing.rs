@@ -104,7 +104,7 @@ impl Laws<'_> {
         sizes
     }
 
-    /// Likewise of the displacements: Σ_k √R_kk |z_k| / √R_ii, that is in a system scaled to a unit diagonal.
+    /// Likewise for the displacements: Σ_k √R_kk |z_k| / √R_ii, that is in a system scaled to a unit diagonal.
     pub(super) fn length_sizes(&self, scale: &DVector<f64>, z: &DVector<f64>) -> DVector<f64> {
         let sum: f64 = scale.iter().zip(z.iter()).map(|(scale, z)| scale * z.abs()).sum();
         scale.map(|scale| sum / scale)

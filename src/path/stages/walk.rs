@@ -26,7 +26,7 @@ use crate::watch::Watch;
 
 /// No stage has more events than this.
 const EVENTS: usize = 100_000;
-/// So many jumps one after the other, with no way between them, lead nowhere.
+/// This many jumps one after the other, with no way between them, lead nowhere.
 const JUMPS: usize = 20;
 
 /// The state from which the history goes on.

@@ -19,9 +19,9 @@ use crate::path::start::PathError;
 const RIGID: f64 = 1e-5;
 /// The error of a leg may be this share of the largest displacement.
 pub(super) const TOLERANCE: f64 = 1e-10;
-/// The leg is taken in so many steps at most.
+/// The leg is taken in this many steps at most.
 const ROWS: usize = 8;
-/// A leg is given up where its corrections stay that large from so many steps on: a shorter one is cheaper.
+/// A leg is given up where, after this many steps, its corrections are still this large: a shorter one is cheaper.
 const HOPELESS: (usize, f64) = (4, 1e-4);
 
 /// Where a leg begins.

@@ -46,15 +46,15 @@ const LONGEST: f64 = 0.125;
 const EASY: usize = 6;
 /// No stage has more legs than this.
 const LEGS: usize = 50_000;
-/// After so many events in a row they are crossed in longer and longer steps.
+/// After this many events in a row they are crossed in longer and longer steps.
 const CROWDED: usize = 4;
 /// A collapse is certified this part of a stage further on.
 const CERTIFIED_AT: f64 = 1e-6;
 /// A step that moves more than this share of the largest displacement …
 const FAR: f64 = 1e-4;
-/// … is looked at again so many times as short …
+/// … is looked at again this many times shorter …
 const SHORTER: f64 = 16.0;
-/// … and is a jump where the motion is more than this part of it still.
+/// … and is a jump where the motion is still more than this part of it.
 const STAYS: f64 = 0.25;
 
 /// The state from which the history goes on.
@@ -116,11 +116,11 @@ pub(super) fn follow<'a>(
     Ok(recorded(&walk.place, stages, end))
 }
 
-/// What keeps a leg from its length.
+/// What keeps a leg from its full length.
 enum Ahead {
     /// A pair does something else from here on.
     Change(f64),
-    /// A shorter one may go.
+    /// A shorter one may succeed.
     Shorter(f64),
 }
 
