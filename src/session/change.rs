@@ -73,8 +73,9 @@ impl Session {
         Ok(())
     }
 
-    /// Works out what is still to come of the present answer and of the one before: displacements, members, reactions, the
-    /// check of equilibrium. Every command does so first, unless the face shows the states ahead of the rest.
+    /// Works out what is still missing from the present answer and from the one before: displacements, members,
+    /// reactions, the check of equilibrium. Every command does so first, unless the face shows the states ahead of the
+    /// rest.
     ///
     /// # Errors
     /// As for a solve; the session then is as it was.

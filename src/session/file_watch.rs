@@ -16,16 +16,16 @@ use crate::text::hash::Hash;
 
 /// Between two looks: a change is seen, and seen to rest, within 0.15 s.
 const LOOK: Duration = Duration::from_millis(50);
-/// So many looks alike are rest.
+/// This many equal looks in a row are rest.
 const REST: u32 = 2;
-/// So many of a file without bytes, or without a file: half a second.
+/// This many where the file is empty or missing: half a second.
 const LONG_REST: u32 = 10;
 /// A file system may date two changes within this time alike.
 const COARSE: Duration = Duration::from_secs(2);
-/// Files that are read at every look while their date is that young.
+/// Files up to this size, in bytes, are read at every look while their date is that young.
 const SMALL: u64 = 1 << 20;
 
-/// What a file system tells of a file without reading it.
+/// What a file system says of a file without reading it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stamp {
     modified: Option<SystemTime>,
@@ -80,7 +80,7 @@ impl Look {
         }
         self.rested = self.rested.saturating_add(1);
         let Some(stamp) = stamp else {
-            // told once
+            // reported once
             return self.rested > LONG_REST && !std::mem::replace(&mut self.is_gone, true);
         };
         let rest = if stamp.length == 0 { LONG_REST } else { REST };
@@ -160,12 +160,12 @@ impl FileWatch {
         }
         aim.looks = scenario.as_deref().map(looks).unwrap_or_default();
         aim.scenario = scenario;
-        // what was told of the one before may stand in this one already
+        // what was reported of the one before may stand in this one already
         aim.news = false;
         self.0.wake.notify_one();
     }
 
-    /// Whether there is news of the scenario aimed at; asked once, it is none any more.
+    /// Whether there is news of the scenario aimed at; asking takes it.
     pub fn take_news(&self) -> bool {
         let mut aim = self.0.aim.lock().unwrap_or_else(PoisonError::into_inner);
         std::mem::take(&mut aim.news)

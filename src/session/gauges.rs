@@ -13,7 +13,7 @@ use super::language::tokens;
 /// A quantity with its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gauge {
-    /// The quantity as `show` takes it; of a probe its name.
+    /// The quantity as `show` takes it; for a probe its name.
     pub quantity: Quantity,
     /// Its value with the unit, or why there is none.
     pub value: String,

@@ -71,7 +71,7 @@ pub enum Next {
     Edit,
 }
 
-/// What the commands that follow were meant for and is not there.
+/// Whether the scenario that the following commands were meant for is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Missing {
     Nothing,
@@ -89,7 +89,7 @@ pub struct Diagnosis {
     pub notes: Vec<String>,
     /// What only contact holds, in sentences.
     pub loose: Vec<String>,
-    /// What is allowed and hardly meant, under the values of the file.
+    /// What is allowed but can hardly be meant, under the values of the file.
     pub warnings: Vec<Problem>,
 }
 

@@ -72,7 +72,7 @@ impl Session {
         let expects_error = read.is_some_and(|parsed| parsed.action.expects_error());
         let result = parsed.and_then(|parsed| self.act(&parsed, text, io));
         self.missing = match (loads, &result) {
-            // Who interrupts sits there: what follows is meant for the session as it is.
+            // Whoever interrupts is at the keyboard: what follows is meant for the session as it is.
             (true, Err(error)) if io.unattended && !error.is_interrupted() => Missing::JustNow,
             (true, _) => Missing::Nothing,
             (false, _) if !io.unattended => Missing::Nothing,

@@ -12,8 +12,8 @@ use crate::model::parameter::ParameterValues;
 use crate::model::scenario::Scenario;
 use crate::text::number::{in_full, short};
 
-/// Keys of a file that are lists of things, with their headings, in the order of a report. What is not here has a
-/// table of another shape (a superelement, a contact system, an LCP, loads, stages), is told elsewhere (parameters,
+/// Keys of a file that are lists of things, with their headings, in the order of a report. What is not here has a table
+/// of another shape (a superelement, a contact system, an LCP, loads, stages), is shown elsewhere (parameters,
 /// combinations, probes, rules) or is not data (title, remarks).
 const LISTS: &[(&str, &str)] = &[
     ("materials", "Materials"),
@@ -40,9 +40,9 @@ const WORDS: &[&str] = &[
     "dofs", "names",
 ];
 
-/// Numbers of rows a matrix may have to be shown.
+/// Most rows of a matrix that is shown.
 const MATRIX: usize = 8;
-/// Entries of a list in a cell; of a longer one the first and the last are named.
+/// Most entries of a list in a cell; of a longer list the first and the last are named.
 const ENTRIES: usize = 8;
 
 /// Where expressions get their values from.

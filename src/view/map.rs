@@ -12,7 +12,7 @@ use crate::text::number::{heading, short, with_unit};
 const HEIGHT: usize = 18;
 /// No picture is wider.
 const WIDEST: usize = 72;
-/// Of pairs, more than this are counted, not named.
+/// More pairs than this are counted, not named.
 const NAMED: usize = 12;
 
 /// What stands beside the picture.

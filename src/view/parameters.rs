@@ -35,7 +35,7 @@ pub fn table(scenario: &Scenario, values: &ParameterValues) -> Table {
         let role = if is_changed { Role::Accent } else { Role::Plain };
         let mut cells = vec![
             Cell::from(name.as_str()),
-            // What a formula gives has the digits of its rounding; what was set is told as it was.
+            // The value of a formula has digits of rounding; what was set is shown as it was.
             Cell::new(shown(value), role),
             Cell::new(parameter.unit.clone().unwrap_or_default(), Role::Muted),
         ];

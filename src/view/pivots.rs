@@ -12,7 +12,7 @@ use crate::answer::record::{Answer, PivotRecord};
 use crate::answer::rounding::{denoised, largest};
 use crate::model::units::Units;
 
-/// Whether the pivots are those of a contact problem, where p is a force; in a bare LCP it has no unit. Told by
+/// Whether the pivots are those of a contact problem, where p is a force; in a bare LCP it has no unit. Recognized by
 /// the names: `w[1]` and `z[1]` occur in a bare LCP only.
 pub fn of_contact(pivots: &[PivotRecord]) -> bool {
     pivots.iter().any(|pivot| {

@@ -25,7 +25,7 @@ impl Viewpoint {
         ("YZ", Viewpoint { azimuth: 0.0, elevation: 0.0 }),
     ];
 
-    /// From any side; `None` of angles that are not numbers, or of an elevation beyond the vertical.
+    /// From any side; `None` for angles that are not numbers, or for an elevation beyond the vertical.
     pub fn new(azimuth: f64, elevation: f64) -> Option<Viewpoint> {
         let turned = 180.0 - (180.0 - azimuth).rem_euclid(360.0);
         (turned.is_finite() && elevation.abs() <= 90.0).then_some(Viewpoint { azimuth: turned, elevation })
@@ -37,7 +37,7 @@ impl Viewpoint {
         found.map(|(_, viewpoint)| *viewpoint)
     }
 
-    /// Turned to the right by so many degrees and up by so many; it stops at the vertical.
+    /// Turned by these degrees to the right and up; it stops at the vertical.
     pub fn turned(self, right: f64, up: f64) -> Viewpoint {
         Viewpoint::new(self.azimuth + right, (self.elevation + up).clamp(-90.0, 90.0)).unwrap_or(self)
     }

@@ -5,7 +5,7 @@ use super::table::{Align, Table};
 use crate::text::number::{DIGITS, heading};
 use crate::text::printable::{is_unprintable, xml as escaped};
 
-/// Longer tables show so many rows of their beginning and of their end.
+/// Longer tables show this many rows of their beginning and of their end.
 const ENDS: usize = 20;
 
 /// A part of a report.
@@ -15,7 +15,7 @@ pub enum Block {
     Heading(String),
     /// A paragraph.
     Text(String),
-    /// A table; what the rows that are left out of a long one can be got by.
+    /// A table; how to get the rows that are left out of a long one.
     Table(Table, &'static str),
     /// A figure in SVG: a short name, what it shows, its text.
     Figure {

@@ -34,7 +34,7 @@ impl Scale {
         Scale::new(largest(values), DIGITS, -1..=4)
     }
 
-    /// Of a column in so many digits.
+    /// Of a column with this many digits.
     pub fn with_digits(values: impl IntoIterator<Item = f64>, digits: usize) -> Scale {
         Scale::new(largest(values), digits, -1..=4)
     }

@@ -360,7 +360,7 @@ fn attempt(attempt: &Attempt) -> String {
     )
 }
 
-/// So many parts that only contact holds are told one by one.
+/// At most this many parts that only contact holds are listed one by one.
 const LOOSE: usize = 3;
 
 /// Writes a line for every part that only contact holds; nothing where there are none.

@@ -210,7 +210,7 @@ impl Style {
         self.error(&lines.join("\n"))
     }
 
-    /// `label` and behind it `text`, broken into lines that hang under the text's first word; under the label where that
+    /// `label` and after it `text`, broken into lines that hang under the text's first word; under the label where that
     /// takes more than half of the width.
     pub fn hanging(&self, label: &str, text: &str) -> Vec<String> {
         let label = self.text(label);

@@ -28,7 +28,7 @@ enum Kind {
     Measured,
     /// The same, freed of its rounding already: beside a bound of 1e15 a force of 1 is not noise.
     Clean,
-    /// Given by the user, or read back by him.
+    /// Given by the user, or to be typed again.
     Given,
     /// Counts and ratios: no zeros behind their digits.
     Plain,
@@ -95,7 +95,7 @@ impl Column {
         self
     }
 
-    /// Of a part of a table: the power of ten is that of a column in which a number of this size stands, too.
+    /// For a part of a table: the power of ten is that of a column in which a number of this size stands, too.
     pub fn with_unwritten(mut self, largest: f64) -> Column {
         self.unwritten = largest;
         self
@@ -218,7 +218,7 @@ impl Table {
         Ok(())
     }
 
-    /// The columns with at most so many digits in their numbers.
+    /// The columns with at most this many digits in their numbers.
     pub(super) fn printed(&self, digits: usize, style: &Style) -> Vec<Printed> {
         (0..self.columns.len()).map(|index| self.printed_column(index, digits, style)).collect()
     }

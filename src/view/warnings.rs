@@ -1,4 +1,4 @@
-//! What is allowed in a scenario and hardly meant.
+//! What is allowed in a scenario but can hardly be meant.
 
 use std::io::{self, Write};
 

@@ -128,7 +128,8 @@ impl Session {
     /// Whether the measurements belong to the load history.
     ///
     /// # Errors
-    /// What is not a measurement of a state; errors of some only; several kinds without errors.
+    /// Quantities that are not measured on a state; standard errors for only some of them; several kinds without
+    /// errors.
     fn judge(&self, measured: &[Measurement]) -> Result<bool, CommandError> {
         fn inner(quantity: &Quantity) -> &Quantity {
             match quantity {

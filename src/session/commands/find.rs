@@ -67,7 +67,7 @@ pub(super) fn words(asked: &Asked<'_>) -> Vec<Candidate> {
     }
 }
 
-/// What stands behind `find`.
+/// What follows `find`.
 struct Request {
     which: Option<Which>,
     name: String,

@@ -18,7 +18,7 @@ use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
 
-/// A stopped map is waited for so long: a line and the drawing.
+/// How long a stopped map is waited for: a line and the drawing.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Cut the plane of two parameters into its regions of equal working scheme

@@ -52,7 +52,7 @@ impl Action for New {
     }
 }
 
-/// The kind; then what can be chosen of it, but for what was chosen already, and the file.
+/// The kind; then what can be chosen of it, except for what was chosen already, and the file.
 fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
     let [kind, given @ ..] = asked.given else {
         return Candidate::plain(template::ALL.iter().map(|template| template.kind));

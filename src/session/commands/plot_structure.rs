@@ -85,7 +85,7 @@ pub(in crate::session) struct Shape<'a> {
 }
 
 impl Shape<'_> {
-    /// Its picture, so many rows high.
+    /// Its picture, `height` rows high.
     pub(in crate::session) fn picture(&self, height: usize) -> scene::Picture<'_> {
         scene::Picture {
             title: &self.title,

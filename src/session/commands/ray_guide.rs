@@ -6,12 +6,12 @@ use crate::session::Session;
 use crate::session::language::{tokens, topics};
 use crate::view::style::Style;
 
-/// More load cases or friction coefficients than that are not gone through.
+/// More load cases or friction coefficients than this are not gone through.
 const MOST: usize = 3;
 /// All working schemes of more pairs take long.
 const FEW_PAIRS: usize = 10;
 
-/// Commands to type, and what they tell.
+/// Commands to type, and what they show.
 type Step = (Vec<String>, &'static str);
 
 impl Session {

@@ -96,7 +96,7 @@ impl Session {
     fn reload(&mut self, text: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
         let scenario = load::file(self.own_file("reload")?, io.watch)?;
         let name = scenario.name.clone();
-        // of a scenario that names other files those may have changed
+        // the other files that a scenario names may have changed
         if scenario.text == self.scenario().text && !scenario.text.contains("\"file\"") {
             return self.say_what_changed(&[format!("{name} is as it was")], io);
         }

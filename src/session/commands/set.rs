@@ -36,7 +36,7 @@ impl Action for Set {
     }
 }
 
-/// What may stand behind `set`.
+/// What may follow `set`.
 fn settings(asked: &Asked<'_>) -> Vec<Candidate> {
     match asked.given {
         [] => {

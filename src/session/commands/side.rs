@@ -83,7 +83,7 @@ impl Session {
     /// The answer at other values of parameters, or factors of load cases, on the side: the session stays as it is.
     ///
     /// # Errors
-    /// Values that cannot be; nothing solved yet; an interruption.
+    /// Impossible values; nothing solved yet; an interruption.
     pub fn glance(&self, settings: &[(String, f64)], watch: &dyn Watch) -> Result<Glance, CommandError> {
         let (prepared, solved) = self.both()?;
         let setup = self.now.clone();

@@ -170,7 +170,7 @@ impl Session {
     /// Sweeps over the present values into a file, or else into `stream`.
     ///
     /// # Errors
-    /// A grid that cannot be, a file that cannot be written or belongs to another sweep.
+    /// An impossible grid, a file that cannot be written or belongs to another sweep.
     pub fn sweep_into(
         &self,
         request: &SweepRequest<'_>,

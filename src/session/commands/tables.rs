@@ -205,7 +205,7 @@ impl Session {
         });
         io.show(&chosen.iter().map(json_export::member).collect::<Vec<_>>(), |out, style| {
             self.write_history_place(out, style)?;
-            // The extremes of a whole bar are told where only that is shown.
+            // The extremes of a whole bar are given where only that is shown.
             let bar = match rows {
                 Rows { names: [bar], top: None, .. } => bars.iter().find(|known| *known == bar).copied(),
                 _ => None,

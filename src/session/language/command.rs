@@ -1,6 +1,6 @@
-//! What a command is. Each is told once, in its file under `session/commands`: its name, its arguments with their help
-//! and an example (by clap), what may be typed next, and what it does. `commands::GROUPS` lists them all; the parser,
-//! help, completion and hints are made from that table.
+//! What a command is. Each is described once, in its file under `session/commands`: its name, its arguments with their
+//! help and an example (by clap), what may be typed next, and what it does. `commands::GROUPS` lists them all; the
+//! parser, help, completion and hints are made from that table.
 
 use std::fmt;
 

@@ -33,7 +33,7 @@ fn place(line: &str, position: usize) -> Option<Place<'_>> {
     let head = line.get(..position)?;
     let (from, to) = *tokens::spans(head).last()?;
     if to < head.len() {
-        return None; // behind a `#`
+        return None; // after a `#`
     }
     let command = &head[from..];
     let start = command.char_indices().rev().find(|(_, c)| c.is_whitespace()).map_or(0, |(at, c)| at + c.len_utf8());

@@ -84,7 +84,7 @@ impl ExpectationSyntax {
 pub struct Unmet {
     /// What was expected.
     pub expected: String,
-    /// What there is.
+    /// What was found.
     pub found: String,
 }
 

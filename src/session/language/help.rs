@@ -41,7 +41,7 @@ pub fn overview(style: &Style) -> String {
 /// What there is to say of a word: a topic, a command, a quantity, or both of these.
 ///
 /// # Errors
-/// It is nothing of these, or may be several commands.
+/// It is none of these, or may be several commands.
 pub fn page(word: &str, style: &Style) -> Result<String, GrammarError> {
     if let Some(topic) = topics::find(word) {
         return Ok(topic.text(style));

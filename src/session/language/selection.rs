@@ -88,7 +88,7 @@ impl<'w> Rows<'w> {
         Ok(rows)
     }
 
-    /// Indices of the rows that are named, in the order in which they are; all of them without names.
+    /// Indices of the rows that are named, in the order of the names; all of them without names.
     ///
     /// A name is an id, a range `A..B` or `joint[0..4]` of them, a pattern with `*`, or what stands before a bracket: `joint` for all
     /// `joint[…]`.

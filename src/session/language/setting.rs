@@ -26,9 +26,9 @@ pub enum SetError {
         name: String,
         /// "(did you mean …?)".
         near: String,
-        /// What there is.
+        /// The names that there are.
         known: String,
-        /// The rules that do something in it.
+        /// The rules that have an effect in it.
         rules: String,
     },
     /// No number.
@@ -60,10 +60,10 @@ pub enum SetError {
     CoveringOfLcp,
 }
 
-/// A choice of how to solve, named and told in words.
+/// A choice of how to solve, named and described.
 #[derive(Debug)]
 pub struct Rule {
-    /// Its name behind `set`.
+    /// Its name after `set`.
     pub name: &'static str,
     /// What it is.
     pub about: &'static str,
@@ -114,7 +114,7 @@ pub static RULES: [Rule; 5] = [
     },
 ];
 
-/// The rules that do something in the plane, or in space: those of the polygon belong to space.
+/// The rules that have an effect in the plane, or in space: those of the polygon belong to space.
 pub fn rules_of(dimension: Dimension) -> impl Iterator<Item = &'static Rule> {
     RULES.iter().filter(move |rule| dimension == Dimension::Space || !matches!(rule.name, "facets" | "cone"))
 }
@@ -195,7 +195,7 @@ pub fn unknown_parameter(name: &str, scenario: &Scenario) -> SetError {
     }
 }
 
-/// Splits `F2 += 10`, `F2+=10`, `f=0.3`, `f 0.3` behind the name.
+/// Splits `F2 += 10`, `F2+=10`, `f=0.3`, `f 0.3` after the name.
 fn name_and_rest(text: &str) -> (&str, &str) {
     let text = text.trim();
     let mut end = text.find(|c: char| c.is_whitespace() || c == '=').unwrap_or(text.len());

@@ -8,7 +8,7 @@ pub struct Topic {
     pub name: &'static str,
     /// A line about it.
     pub about: &'static str,
-    /// Labels and what hangs behind them.
+    /// Labels and the texts that hang after them.
     lines: &'static [(&'static str, &'static str)],
 }
 
@@ -30,7 +30,7 @@ impl Topic {
     }
 }
 
-/// Labels with texts that hang behind them.
+/// Labels with texts that hang after them.
 pub fn hanging<'l>(lines: impl Iterator<Item = (&'l str, &'l str)>, style: &Style) -> String {
     let lines = lines.flat_map(|(label, text)| style.hanging(label, text));
     lines.map(|line| line.trim_end().to_owned() + "\n").collect()

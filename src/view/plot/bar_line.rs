@@ -25,8 +25,8 @@ impl BarLine {
         BarLine { elements, force }
     }
 
-    /// Of values along the bar the places on it and the side there; of two values at one distance the second belongs to
-    /// the element after it.
+    /// For values along the bar, the places on it and the side there; of two values at one distance the second belongs
+    /// to the element after it.
     pub fn feet(&self, points: &[(f64, f64)]) -> Vec<([f64; 3], [f64; 3])> {
         let late = |i: usize| i == 0 || points[i - 1].0 == points[i].0;
         points.iter().enumerate().map(|(i, &(distance, _))| self.at(distance, late(i))).collect()

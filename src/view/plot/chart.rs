@@ -54,9 +54,9 @@ pub enum Values {
 pub struct Chart {
     /// What is drawn.
     pub title: String,
-    /// Unit of the ordinates; it stands behind the title, with their power of ten.
+    /// Unit of the ordinates; it stands after the title, with their power of ten.
     pub ordinate: Option<String>,
-    /// What is to be said behind the unit.
+    /// What is said after the unit.
     pub about: String,
     /// Curves, the first one lowest.
     pub curves: Vec<Curve>,
@@ -119,13 +119,14 @@ impl Chart {
         Some(Axes { scale, ticks, range: range(points().map(|&(x, _)| x)), flat })
     }
 
-    /// The title, the unit with its power of ten, and what is said behind it.
+    /// The title, the unit with its power of ten, and what is said after it.
     pub fn heading(&self, scale: Option<&Scale>, ascii: bool) -> String {
         let unit = scale.map_or(self.ordinate.clone(), |scale| scale.unit(self.ordinate.as_deref(), ascii));
         format!("{}{}", heading(&self.title, unit.as_deref()), self.about)
     }
 
-    /// The heading in the columns there are: what it is called is cut, and what is said behind it, before its unit is.
+    /// The heading cut to the columns there are: the title, and what is said after the unit, give way before the unit
+    /// does.
     fn fitted_heading(&self, scale: Option<&Scale>, style: &Style) -> String {
         let heading = self.heading(scale, style.ascii);
         let whole = style.text(&heading);

@@ -11,7 +11,7 @@ pub type Seen = [f64; 3];
 /// A line of a picture.
 pub type Line = Vec<(f64, f64)>;
 
-/// Of every cell, how near to the viewer the nearest face is.
+/// For every cell, how near to the viewer the nearest face is.
 #[derive(Clone, Debug)]
 pub struct Depths {
     corner: [f64; 2],

@@ -1,5 +1,5 @@
-//! Slip, friction force, opening and pressure over a face of contact, whose pairs lie on a plane and not on a line: a map of
-//! cells, each as its nearest pair.
+//! Slip, friction force, opening and pressure over a face of contact, whose pairs lie on a plane and not on a line: a
+//! map of cells, each shown like its nearest pair.
 
 use std::collections::HashSet;
 use std::io::{self, Write};
@@ -332,7 +332,7 @@ mod tests {
         assert!((map.largest - 3e-3).abs() < 1e-15);
         let levels: Vec<usize> = map.spots.iter().map(|spot| map.level(spot.value)).collect();
         assert_eq!(levels, [0, 3, 6, 9].repeat(3));
-        // it slips at 30° from t1 but where it sticks, at x = 0
+        // it slips at 30° from t1 except at x = 0, where it sticks
         for spot in &map.spots {
             match spot.towards {
                 Some((c, s)) => assert!((s.atan2(c).to_degrees() - 30.0).abs() < 1e-9 && spot.at.0 > 0.0),

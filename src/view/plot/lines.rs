@@ -12,7 +12,7 @@ use crate::model::vector::{cross, distance, dot, length, unit, way};
 use crate::view::projection::Projection;
 
 /// Lines of a structure: bars (bent as the element bends), outlines of plates and meshes, single elements, sharp edges
-/// of solids, hulls of rigid bodies and of the parts of a superelement (those along a line as it).
+/// of solids, hulls of rigid bodies and of the parts of a superelement (a line where all their nodes are on one).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
     /// In view.
@@ -51,9 +51,9 @@ pub struct Face {
 pub struct Move<'a> {
     /// Displacements of the nodes; those beyond the list stay where they are.
     pub u: &'a [[f64; 6]],
-    /// Factors of the load cases that bend bars between their nodes; none of a motion that no load goes along with.
+    /// Factors of the load cases that bend bars between their nodes; none for a motion that no load belongs to.
     pub factors: &'a [f64],
-    /// By which all of it is multiplied.
+    /// The factor by which all of it is multiplied.
     pub by: f64,
 }
 

@@ -285,7 +285,7 @@ mod tests {
         assert!(!apart.is_added && apart.arrows.len() == 3);
     }
 
-    /// Two loads of which one stands behind the other are two, and told to be added up where they are drawn as one.
+    /// Two loads of which one stands behind the other are two, and are said to be added up where they are drawn as one.
     #[test]
     fn loads_behind_each_other_are_told_to_be_added_up() {
         let points = [1.0, 5.0].map(|depth| (LoadKind::Force, [0.0, 0.0, depth], [0.0, -2.0, 0.0], 1)).to_vec();

@@ -148,7 +148,7 @@ pub struct PairMark {
     pub towards: Option<(f64, f64)>,
 }
 
-/// A slip shorter than this in the picture, of 1, is seen from its tip or its tail.
+/// A slip of length 1 that is shorter than this in the picture is seen from its tip or its tail.
 const END_ON: f64 = 0.1;
 
 /// Which way the second side of a pair in this state slips in the picture, where in space `slip` is along t1 and t2.

@@ -8,7 +8,7 @@ use crate::view::projection::Projection;
 
 /// Straight pieces of a bent frame element where there are many of them, and where there are few.
 const PIECES: [usize; 2] = [8, 32];
-/// So many pieces of all bent elements are enough: the more elements, the fewer pieces of each.
+/// This many pieces of all bent elements together are enough: the more elements, the fewer pieces of each.
 const ALL_PIECES: usize = 512;
 
 /// What pictures of a structure share.

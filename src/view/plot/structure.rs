@@ -18,7 +18,7 @@ use crate::text::number::heading;
 use crate::view::members::extremes;
 use crate::view::style::{Role, Style};
 
-/// Bars whose extremes are told below a picture.
+/// Most bars whose extremes are given below a picture.
 const EXTREMES: usize = 6;
 /// Plates and faces are drawn with their grid as long as its lines are this many dots apart.
 pub const GRID_PITCH: f64 = 6.0;
@@ -51,7 +51,7 @@ fn slip_sign(towards: Option<(f64, f64)>, eight: bool, ascii: bool) -> char {
     if x.abs() >= y.abs() { signs[usize::from(x < 0.0)] } else { signs[2 + usize::from(y < 0.0)] }
 }
 
-/// What a support is called that holds so many components.
+/// What a support that holds this many components is called.
 pub fn support_word(held: usize) -> &'static str {
     match held {
         3.. => "clamped",

@@ -46,9 +46,9 @@ impl Quantity {
     }
 }
 
-/// Most of the width that stands between the joints.
+/// Largest share of the width that the spaces between the joints take.
 const BETWEEN: f64 = 0.4;
-/// Of the length of all joints, what stands between two of them where they are few.
+/// The space between two joints where they are few, as a share of the length of all of them.
 const GAP: f64 = 0.1;
 
 /// Abscissas of the pairs.
@@ -65,7 +65,7 @@ pub struct Zone {
 }
 
 /// Abscissas along the contact zone: in each joint the length of the way from pair to pair, in their order; the joints
-/// stand one behind the other, apart. Where a pair has no position, or all have the same, the numbers 1, 2 … serve.
+/// stand one after the other, apart. Where a pair has no position, or all have the same, the numbers 1, 2 … serve.
 pub fn zone(pairs: &[PairState]) -> Zone {
     let joints = joints(pairs);
     let place = |pair: usize| pairs[pair].position.unwrap_or_default();

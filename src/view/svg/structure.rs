@@ -106,7 +106,7 @@ impl Place {
     }
 }
 
-/// A length of 5, 2 or 1 × 10^k, at most so long.
+/// A length of 5, 2 or 1 × 10^k, not above `most`.
 fn round_length(most: f64) -> f64 {
     let power = 10f64.powi(most.log10().floor() as i32);
     [5.0, 2.0].into_iter().map(|digit| digit * power).find(|length| *length <= most).unwrap_or(power)
@@ -144,7 +144,7 @@ pub(super) fn pair(
     }
 }
 
-/// The sign of a support that holds so many components, under its node.
+/// The sign of a support that holds this many components, under its node.
 pub(super) fn support(drawing: &mut Drawing, (x, y): (f64, f64), held: usize, r: f64) {
     match held {
         3.. => {

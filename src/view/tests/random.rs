@@ -12,7 +12,7 @@ use crate::view::plot::{diagram, structure, trace, zone};
 use crate::view::style::Style;
 use crate::view::*;
 
-/// Numbers of every size, and those that are none.
+/// Numbers of every size, NaN and infinities.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         4 => -1e3..1e3f64,

@@ -125,7 +125,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
     }
 }
 
-/// The pivots of that run, of whose pairs so many slip.
+/// The pivots of that run, in which `slipping` pairs slip.
 fn pivots(friction: f64, pull: f64, slipping: usize) -> Vec<PivotRecord> {
     let r = friction * WEIGHT;
     let p = |k: usize| (pull - k as f64 * r) / (1.0 + friction) / k.max(1) as f64;
