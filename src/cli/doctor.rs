@@ -77,7 +77,7 @@ impl Folder {
     }
 }
 
-/// A path; what of it is not text is replaced.
+/// A path, with what is not text in it replaced.
 fn shown(path: &Path) -> String {
     path.display().to_string()
 }

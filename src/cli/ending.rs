@@ -16,7 +16,7 @@ pub enum Failure {
     Command(CommandError),
     /// A message for stderr and a status.
     Status(u8, String),
-    /// What is wrong was told already.
+    /// What is wrong was reported already.
     Told(u8),
 }
 
@@ -32,7 +32,7 @@ impl From<CommandError> for Failure {
     }
 }
 
-/// The exit status of a face; tells on stderr, in the style `errors`, why it could not go on.
+/// The exit status of a face; says on stderr, in the style `errors`, why it could not go on.
 pub fn finish(ended: io::Result<u8>, errors: &Style) -> u8 {
     status(ended.map_err(Failure::from), false, errors)
 }
@@ -43,7 +43,7 @@ pub(super) fn asks_for_json(arguments: &[OsString]) -> bool {
     arguments.iter().any(|word| word == "--format=json") || arguments.windows(2).any(pair)
 }
 
-/// The exit status of a result; a failure is told on stderr, and with `json` on stdout as well.
+/// The exit status of a result; a failure is reported on stderr, and with `json` on stdout as well.
 pub(super) fn status(result: Result<u8, Failure>, json: bool, errors: &Style) -> u8 {
     let (status, message, error) = match result {
         Ok(status) | Err(Failure::Told(status)) => return status,

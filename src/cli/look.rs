@@ -51,7 +51,7 @@ impl Look {
         if self.ascii { Some("--ascii".to_owned()) } else { why_ascii(&variable) }
     }
 
-    /// Why a stream has no colours that has none.
+    /// Why a stream without colours has none.
     pub(super) fn why_no_color(&self, terminal: bool) -> String {
         match self.color {
             Color::Never => "--color never",

@@ -43,7 +43,7 @@ impl Editing {
         *self.line.lock().unwrap_or_else(PoisonError::into_inner) = (line.to_owned(), position);
     }
 
-    /// The line as it was when the editor was interrupted, before the cursor and behind it.
+    /// The line as it was when the editor was interrupted, before the cursor and after it.
     pub fn last_line(&self) -> (String, String) {
         let (line, position) = self.line.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let (before, behind) = line.split_at_checked(position).unwrap_or((&line, ""));
@@ -127,8 +127,8 @@ impl Hinter for Editing {
     }
 }
 
-/// The pace of the keys: a line whose end follows its last character at once was pasted or typed ahead, and more
-/// lines may wait behind it in the editor's own buffer.
+/// The pace of the keys: a line whose end follows its last character at once was pasted or typed ahead, and more lines
+/// may wait in the editor's own buffer.
 #[derive(Clone, Default)]
 pub struct Pace(Arc<Mutex<Wait>>);
 
@@ -153,7 +153,7 @@ impl Pace {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The editor has drawn the line: what that took is no pace of the keys.
+    /// The editor has drawn the line: that time does not belong to the pace of the keys.
     fn drawn(&self) {
         self.wait().idle_since = Some(Instant::now());
     }

@@ -17,8 +17,8 @@ pub(super) const LOOK: Duration = Duration::from_millis(50);
 
 /// One result after the other; without a terminal no prompt.
 ///
-/// A command that fails is told on stderr and the next one runs. On a pipe the exit status is that of the first
-/// failure; on a terminal a failure is part of the conversation.
+/// A failure is reported on stderr and the next command runs. On a pipe the exit status is that of the first failure;
+/// on a terminal a failure is part of the conversation.
 pub fn run(session: &mut Session, style: Style, signals: &Signals, prompt: bool) -> io::Result<Ended> {
     let lines = reader()?;
     let mut stdout = Printable::new(io::stdout(), style.color);

@@ -122,7 +122,7 @@ fn carry_out(session: &mut Session, request: &Request, style: Style, watch: &Ter
         let own = answers.pop().unwrap_or_default();
         match result {
             Ok(then) => {
-                // what stands before the command's own answer are those of a script that it ran
+                // what stands before the command's own answer are the answers of a script that it ran
                 let own = own.get("report").cloned().unwrap_or_default();
                 reports.push(if answers.is_empty() { own } else { Value::Array(answers) });
                 next = then;

@@ -23,7 +23,7 @@ use super::editor::{Editing, Pace};
 use super::{Ended, pager};
 use crate::signals::{self, Signals, TerminalWatch, terminal_width};
 
-/// A terminal that hung up reads as an end and fails to be written on a moment before the signal tells it.
+/// A terminal that hung up reads as ended, and refuses writes, a moment before the signal says so.
 const HANGING_UP: Duration = Duration::from_millis(200);
 /// Lines of history kept.
 const HISTORY: usize = 10_000;
@@ -102,7 +102,7 @@ struct Input {
     files: Option<FileWatch>,
     /// Lines of a paste or typed ahead …
     waiting: VecDeque<String>,
-    /// … and the beginning of one, before and behind the cursor.
+    /// … and the beginning of one, before and after the cursor.
     begun: (String, String),
     /// Whether a line since the last prompt came without a hand on the keys.
     pasted: bool,
@@ -171,7 +171,7 @@ impl Input {
         self.begun = Default::default();
         signals.take_interrupt();
         if read.is_err() && signals.has_knocked() {
-            // the line gives way to what is told, and comes again as it was
+            // the line gives way to what is reported, and comes again as it was
             self.begun = self.editor.helper().map(Editing::last_line).unwrap_or_default();
             erase_line(self.prompt, &self.begun.0)?;
             return Ok(Typed::Nothing);
@@ -227,7 +227,7 @@ impl Input {
     }
 }
 
-/// Takes the line away that was being typed; the cursor stood behind `before`.
+/// Takes the line away that was being typed; the cursor stood after `before`.
 fn erase_line(prompt: &str, before: &str) -> io::Result<()> {
     // the editor has gone to the next row when it returns
     let rows = (prompt.width() + before.width()) / terminal_width().max(1) + 1;

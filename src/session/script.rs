@@ -13,7 +13,7 @@ const DEEPEST: usize = 16;
 pub const LONGEST: usize = 1 << 20;
 
 impl Session {
-    /// The refusal of such a line: of no part of it anything is done.
+    /// The refusal of such a line: no part of it is run.
     pub fn refuse_long_line(&mut self, line: usize) -> CommandError {
         let refusal =
             format!("line {line} has more than {LONGEST} bytes: no command is so long; nothing of it was done");

@@ -64,8 +64,8 @@ impl Setup {
         self.solve_from(None, false, watch)
     }
 
-    /// Solves, from the `last` answer of the same geometry where there is one and that pays; `joints_first`: of an answer
-    /// found so, displacements and the check of equilibrium are left for [`Session::ensure_whole`].
+    /// Solves, from the `last` answer of the same geometry where there is one and that pays; `joints_first`:
+    /// displacements and the check of equilibrium of an answer found so are left for [`Session::ensure_whole`].
     pub(super) fn solve_from(
         &mut self,
         last: Option<Arc<Solved>>,
@@ -139,7 +139,7 @@ impl Session {
                 sets.push(format!("set {} {now}", rule.name));
             }
         }
-        // one run for all of them: a run half-way might be refused
+        // one run for all of them: a run after only some of them might be refused
         if sets.len() > 1 || !self.auto {
             commands.push("set auto off".to_owned());
         }

@@ -58,7 +58,7 @@ pub fn run<T: Send + 'static>(
     run_patiently(watch, Duration::ZERO, job)
 }
 
-/// As [`run`], for a job that has something to show when it is stopped: its result is waited for so long.
+/// As [`run`], for a job that has something to show when it is stopped: its result is waited for this long.
 ///
 /// # Errors
 /// As [`run`].

@@ -83,7 +83,7 @@ pub enum Do {
     Ask,
     /// Ask no longer for the selected quantity.
     Forget,
-    /// The cursor of the map so many cells to the right.
+    /// The cursor of the map this many cells to the right.
     Across(i8),
     /// Set the parameters of the map to the place of its cursor.
     SetHere,
@@ -158,7 +158,7 @@ pub enum LookChange {
     DeformAuto,
     /// Show or hide the loads.
     Loads,
-    /// The viewer walks round a structure in space: so many degrees to the right, up.
+    /// The viewer walks round a structure in space: degrees to the right, up.
     Turn(i8, i8),
     /// The next of the named views.
     NextView,
@@ -288,7 +288,7 @@ pub enum Action {
     Resize(u16, u16),
     /// The next picture of a motion.
     Tick,
-    /// A job tells how far it is.
+    /// A job reports how far it is.
     Progress {
         /// What is done.
         what: String,

@@ -33,9 +33,9 @@ pub enum Input {
     /// Nothing: keys are commands.
     #[default]
     None,
-    /// A command behind `:`.
+    /// A command after `:`.
     Command(Entry),
-    /// A part of a row to go to, behind `/`.
+    /// A part of a row to go to, after `/`.
     Search {
         /// The text.
         entry: Entry,

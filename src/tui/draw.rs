@@ -275,7 +275,7 @@ fn draw_bottom(state: &State, area: Rect, buffer: &mut Buffer) {
     }
     let mut x = area.x;
     let mut contexts = input::contexts(state);
-    // the tour tells its keys itself
+    // the tour shows its keys itself
     contexts.retain(|context| *context != Context::Tour);
     for (keys, word) in state.keys.hints(&contexts, look.ascii) {
         let room = usize::from(area.right().saturating_sub(x));

@@ -176,8 +176,8 @@ pub fn pane_at(places: &Places, x: u16, y: u16) -> Option<(Pane, Rect)> {
     places.panes.iter().copied().find(|(_, area)| area.contains((x, y).into()))
 }
 
-/// Names of tabs in a border with the columns they take: (start, pane, name). They are as long as all of them find room,
-/// that of the pane in front longest; where even the shortest do not, the last ones are numbers.
+/// Names of tabs in a border with the columns they take: (start, pane, name). They are as long as there is room for all
+/// of them, that of the pane in front longest; where even the shortest do not, the last ones are numbers.
 pub fn tab_names(area: Rect, panes: &[Pane], front: Pane) -> Vec<(u16, Pane, String)> {
     /// Blanks around a name and the line to the next one.
     const BETWEEN: usize = 3;

@@ -1,5 +1,5 @@
-//! The pictures of the panes as they are kept, and what each is made of. Where a picture is as of old, a key costs what
-//! is seen of it, however large the model is.
+//! The pictures of the panes as they are kept, and what each is made of. Where a picture has not changed, a key costs
+//! only what is seen of it, however large the model is.
 
 use std::ops::Range;
 
@@ -56,7 +56,7 @@ pub struct Sheet {
 pub struct Order {
     /// Indices of the pairs.
     pub pairs: Vec<usize>,
-    /// Of each pair, its place in the order.
+    /// For each pair, its place in the order.
     places: Vec<usize>,
 }
 

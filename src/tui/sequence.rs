@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-/// So long after an Esc what comes may belong to it. Nobody types `[` that quickly after Esc, and nobody sees Esc come
-/// that much later.
+/// For this long after an Esc, what comes may belong to it. Nobody types `[` that quickly after Esc, and nobody sees
+/// Esc come that much later.
 pub const WAIT: Duration = Duration::from_millis(50);
 
 /// What characters after an Esc make of it.
@@ -95,7 +95,7 @@ pub fn joined<E>(first: Event, mut next: impl FnMut() -> Result<Option<Event>, E
     Ok(events)
 }
 
-/// A pasted text whose end is told by nothing but a pause.
+/// A pasted text whose end is marked by nothing but a pause.
 fn pasted<E>(mut next: impl FnMut() -> Result<Option<Event>, E>) -> Result<Vec<Event>, E> {
     let mut text = String::new();
     let mut last = None;

@@ -19,7 +19,7 @@ use crate::view::projection::Viewpoint;
 pub struct Shown {
     /// The scenario.
     pub scenario: Arc<Scenario>,
-    /// It made ready to be solved, with its structure under the present values.
+    /// The scenario made ready to be solved, with its structure under the present values.
     prepared: Option<Arc<Prepared>>,
     /// Present parameter values.
     pub values: ParameterValues,
@@ -67,7 +67,7 @@ pub struct Moment {
     pub pairs: Vec<PairState>,
     /// Pairs whose state differs from the answer before; empty at a pivot on the way.
     pub changes: Vec<Change>,
-    /// Of each pair, which of the changes is its own.
+    /// For each pair, which of the changes is its own.
     change_of: Vec<Option<usize>>,
     /// z and w; bare LCP only.
     pub solution: Option<PlainSolution>,
@@ -78,11 +78,11 @@ pub struct Moment {
 /// How the structure moves at the place shown; it takes a solution of the whole structure.
 #[derive(Clone, Default)]
 pub struct Motion {
-    /// u_x, u_y and the rotation of every node, of a ray its mode; `None` where nothing is known to move.
+    /// u_x, u_y and the rotation of every node, for a ray its mode; `None` where nothing is known to move.
     pub u: Option<Vec<[f64; 6]>>,
-    /// Factors of the load cases that bend bars between their nodes, and those of the answer before; none of a mode.
+    /// Factors of the load cases that bend bars between their nodes, and those of the answer before; none for a mode.
     pub factors: [Vec<f64>; 2],
-    /// Likewise of the answer before, where it is worth showing.
+    /// Likewise for the answer before, where it is worth showing.
     pub before: Option<Vec<[f64; 6]>>,
     /// The automatic scale. It is that of the answer while its pivots are shown, so that pictures can be compared.
     pub automatic: f64,
@@ -309,7 +309,7 @@ impl Shown {
         [at(stage), stage.checked_sub(1).and_then(at)].map(Option::unwrap_or_default)
     }
 
-    /// By which the factor of a load case is multiplied in the loading shown.
+    /// What the factor of a load case is multiplied by in the loading shown.
     pub fn multiplier(&self, case: &str) -> f64 {
         let scenario = &self.scenario;
         let of = |name: &String| scenario.combinations.iter().find(|(known, _)| known == name);

@@ -22,8 +22,8 @@ const PATIENCE: Duration = Duration::from_millis(400);
 /// Between two looks at the progress.
 const PACE: Duration = Duration::from_millis(250);
 
-/// What follows the states of a slider or a pivot waits so long for the next one: longer than between two repeats of a held
-/// key.
+/// What follows the states of a slider or a pivot waits this long for the next one: longer than between two repeats of
+/// a held key.
 const QUIET: Duration = Duration::from_millis(40);
 
 /// Does one job after `last` was shown. The session is as it was if it fails.

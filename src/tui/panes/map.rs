@@ -44,7 +44,7 @@ pub fn cursor(state: &State) -> Option<[f64; 2]> {
     Some(state.map_at.or_else(|| present(state, drawn)).unwrap_or_else(middle))
 }
 
-/// The place so many cells to the right and up from the cursor, in a pane of this size.
+/// The place this many cells to the right and up from the cursor, in a pane of this size.
 pub fn moved(state: &State, (right, up): (isize, isize), area: Rect) -> Option<[f64; 2]> {
     let drawn = drawn(state)?;
     let ((column, row), (width, height)) = cell_in(drawn, cursor(state)?, area);

@@ -21,7 +21,7 @@ const SLIDER: u16 = 6;
 /// A name is not cut shorter for the sake of its slider.
 const SHORTEST: usize = 6;
 
-/// Width of the names and of the values in a pane of so many columns: names give way to the sliders.
+/// Width of the names and of the values in a pane of this many columns: names give way to the sliders.
 fn widths(state: &State, columns: u16) -> (usize, usize) {
     let names = state.shown.scenario.parameters.keys();
     let name = names.clone().map(|name| name.width()).max().unwrap_or(0);

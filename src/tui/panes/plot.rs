@@ -189,7 +189,7 @@ fn ray(state: &State, area: Rect) -> Vec<Line<'static>> {
     })
 }
 
-/// A chart as high as the area: drawn once more where its legend took more lines than thought.
+/// A chart as high as the area: drawn once more where its legend took more lines than expected.
 fn fitting(area: Rect, draw: impl Fn(usize) -> Vec<Line<'static>>) -> Vec<Line<'static>> {
     let room = usize::from(area.height);
     let height = usize::from(area.height.saturating_sub(AROUND)).max(3);

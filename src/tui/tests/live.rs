@@ -165,7 +165,7 @@ fn the_next_pivot_does_not_wait_for_the_picture_of_the_last() {
     assert!(!rig.state.shown.is_behind() && rig.state.shown.motion.u.is_some());
 }
 
-/// However often its picture is drawn, a structure is gone over once; one whose places change is another.
+/// However often its picture is drawn, a structure is walked over once; one whose places change is another.
 #[test]
 fn what_pictures_share_is_gathered_once() {
     let mut rig = plates();

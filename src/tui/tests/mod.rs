@@ -121,8 +121,8 @@ impl Rig {
     }
 }
 
-/// A block of weight 10 on the ground, pulled by `pull` and held by a spring of stiffness 1000: it slips where the pull is
-/// more than 10 f, and then by (pull − 10 f)/1000. Beside f stand `parameters`, behind the loads `rest`.
+/// A block of weight 10 on the ground, pulled by `pull` and held by a spring of stiffness 1000: it slips where the pull
+/// is more than 10 f, and then by (pull − 10 f)/1000. `parameters` stand beside f, `rest` after the loads.
 fn block_on_a_spring(parameters: &str, pull: &str, rest: &str) -> Scenario {
     let text = format!(
         r#"{{ "format": "stickslip/1", "title": "block on a spring",

@@ -11,7 +11,7 @@ use crate::tui::pane::Pane;
 use crate::tui::panes::{answer, loading, map, pairs, pivots};
 use crate::tui::{layout, overlay, paint};
 
-/// What is said where the pivots of the answer would be asked, and a stage is shown.
+/// What is said where the pivots of the answer are asked for while a stage is shown.
 const OF_THE_ANSWER: &str =
     "a stage is shown, whose events stand in Pivots; why and ties ask the answer (8 goes back to it)";
 
@@ -39,7 +39,7 @@ pub(super) fn why(state: &mut State) -> Vec<Effect> {
     }
 }
 
-/// The command that tells most of the selected pair.
+/// The command that says most about the selected pair.
 fn why_command(state: &State) -> Option<String> {
     if state.shown.moment.solution.is_some() {
         let name = pairs::names(state).get(state.pair)?.clone();

@@ -64,7 +64,7 @@ pub(super) fn finish(state: &mut State, done: Done) -> Vec<Effect> {
     let followed = changed && ended;
     if let Some(error) = done.error {
         if done.interrupted {
-            // a slider or cursor that moved on stops its older solve: nothing to tell
+            // a slider or cursor that moved on stops its older solve: nothing to report
             let moves_on = changed || matches!(done.job, Job::Glance { .. });
             if !moves_on || state.waiting.is_empty() {
                 state.say(Role::Warning, "stopped: the session is as it was");

@@ -73,7 +73,7 @@ pub(super) fn glance_at(state: &mut State, at: [f64; 2]) -> Vec<Effect> {
     order(state, Job::Glance { settings })
 }
 
-/// The cursor so many cells to the right and up.
+/// The cursor this many cells to the right and up.
 pub(super) fn move_by(state: &mut State, by: (isize, isize)) -> Vec<Effect> {
     let to = layout::area_of(state, Pane::Map).and_then(|area| map::moved(state, by, area));
     match to {

@@ -77,7 +77,7 @@ pub(super) fn accept(state: &mut State) -> Vec<Effect> {
                     state.history.remove(0);
                 }
             }
-            // short for what the prompt is asked most
+            // short for what is asked most at the prompt
             if text == "q" {
                 return vec![Effect::Leave(state.home)];
             }
