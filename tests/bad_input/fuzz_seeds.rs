@@ -1,5 +1,5 @@
-//! The fuzz targets with changed seeds: a bounded run in seconds, the same each time. What does not panic, hang or leave
-//! a failed command's traces is well; `cargo fuzz` looks further.
+//! The fuzz targets with changed seeds: a bounded run in seconds, the same each time. An input is handled well if
+//! nothing panics or hangs and a failed command leaves no traces; `cargo fuzz` looks further.
 
 #[path = "../../fuzz/targets/entry.rs"]
 mod entry;
@@ -92,7 +92,7 @@ fn changed(seed: &[u8], random: &mut ChaCha8Rng) -> Vec<u8> {
     bytes
 }
 
-/// Every seed as it is, then so many changed ones: how many of those are accepted.
+/// Every seed as it is, then `count` changed ones: how many of those are accepted.
 fn run(target: fn(&[u8]) -> bool, folders: &[&str], count: usize) -> usize {
     let seeds = seeds(folders);
     assert!(!seeds.is_empty());
@@ -113,7 +113,8 @@ fn run(target: fn(&[u8]) -> bool, folders: &[&str], count: usize) -> usize {
     accepted
 }
 
-/// Some changed inputs pass, or the changes are so coarse that nothing behind the first check is reached; and some do not.
+/// Some changed inputs pass (otherwise the changes are so coarse that nothing after the first check is reached), and
+/// some do not.
 fn some_pass(accepted: usize, count: usize) {
     assert!(accepted > 0 && accepted < count, "{accepted} of {count} were accepted");
 }

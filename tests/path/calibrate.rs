@@ -31,7 +31,7 @@ fn the_hot_pipe_tells_its_friction_by_its_slips() {
         assert_eq!((&found["global"], &found["groups"][0]["identifiable"]), (&global.into(), &true.into()), "{found}");
         assert_eq!(found["degrees_of_freedom"], 2, "{found}");
     }
-    // One that is lifted off tells nothing: at f = 0.3 c2 and c3 are open.
+    // A pair that is lifted off tells nothing: at f = 0.3 c2 and c3 are open.
     let found = report(&mut session, &format!("calibrate f where {slips}")).unwrap();
     assert_eq!((&found["groups"][0]["open"], &found["groups"][0]["slip"]), (&2.into(), &4.into()));
 }
@@ -111,7 +111,7 @@ fn two_groups_are_told_apart_where_the_measurements_do() {
     assert_eq!((&first["identifiable"], &first["stick"]), (&false.into(), &1.into()), "{found}");
     near(&first["interval"][0], 0.1, 1e-9);
     near(&first["interval"][1], 1.0, 0.0);
-    // One slip told twice shows a combination only.
+    // One slip measured twice shows a combination only.
     let found = report(&mut session, "calibrate where z_t a = 0.06, max z_t a = 0.06").unwrap();
     for group in found["groups"].as_array().unwrap() {
         assert_eq!(group["identifiable"], false, "{found}");
@@ -119,9 +119,9 @@ fn two_groups_are_told_apart_where_the_measurements_do() {
     }
 }
 
-/// Of a node that is lifted off nothing shows.
-/// c1 slips by P − f on a spring of stiffness 1 under weight 1, c2 likewise by P/2 − f; measured is c2 alone, or both so that
-/// it is met where c2 comes to rest, at f = 1/2: from there on c2 tells nothing, below it does.
+/// A node that is lifted off shows nothing of its friction. c1 slips by P − f on a spring of stiffness 1 under weight
+/// 1, c2 likewise by P/2 − f; measured is c2 alone, or both so that it is met where c2 comes to rest, at f = 1/2: from
+/// there on c2 tells nothing, below it does.
 #[test]
 fn a_kink_at_the_end_of_a_level_stretch_is_no_friction_found() {
     let text = r#"{ "format": "stickslip/1", "title": "t",

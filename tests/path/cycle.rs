@@ -5,9 +5,9 @@ use stickslip::model::load::load_text;
 
 use super::find::{beam, near, number, report, session, text};
 
-/// A bar of six nodes with friction r = 30 each and flexibility 1e-5 m/kN between them, pulled at its end from 0 to F and
-/// back. Unloading by F slips the end back where F > 2 r: with k nodes sliding both ways, each half cycle moves the k-th
-/// node from the end by what the bars behind it stretch under the pull above 2 r a node.
+/// A bar of six nodes with friction r = 30 each and flexibility 1e-5 m/kN between them, pulled at its end from 0 to F
+/// and back. Unloading by F slips the end back where F > 2 r: with k nodes sliding both ways, each half cycle moves the
+/// k-th node from the end by what the bars behind it stretch under the pull above 2 r per node.
 #[test]
 fn the_bar_shakes_down_up_to_twice_its_friction() {
     let mut session = beam();
@@ -78,7 +78,7 @@ fn the_largest_pull_that_shakes_down() {
     }
     let found = report(&mut session, "cycle F2 0..181").unwrap();
     assert_eq!((&found["kind"], &found["collapse"]["class"]), (&"collapses".into(), &"mechanism".into()));
-    // Pulled and pushed, each way bears r a node: 30 to and fro shakes down, more does not.
+    // Pulled and pushed, each way bears r per node: 30 to and fro shakes down, more does not.
     near(&report(&mut session, "limit cycle F2 -30..30").unwrap()["shakes_down"], 30.0, 1e-6);
 }
 
@@ -116,7 +116,7 @@ fn the_tail_of_a_convergence_is_no_ratchet() {
     let last = found["cycles"].as_array().unwrap().last().unwrap();
     near(&last["pairs"][0]["there"], -last["pairs"][0]["back"].as_f64().unwrap(), 1e-12);
     near(&last["pairs"][0]["there"].as_f64().unwrap().abs().into(), 0.1875, 1e-9);
-    // The sentence tells how near it has come, and that the next cycle was the same.
+    // The sentence says how near it has come, and that the next cycle was the same.
     assert_eq!((&found["proof"]["proved"], &found["proof"]["map"]), (&true.into(), &"contracting".into()), "{found}");
     let sentence = found["sentence"].as_str().unwrap();
     assert!(sentence.contains("every further cycle is the same") && last["repeated"] == true, "{found}");

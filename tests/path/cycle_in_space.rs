@@ -64,7 +64,7 @@ fn all_starts_come_to_the_same_cycle() {
         ["no slips", "most slider along t1", "least slider along t1", "most slider along t2", "least slider along t2"]
     );
     starts.iter().for_each(|start| near(&start["dissipated"], 8.0, 1e-5));
-    // The farthest it may stand from where the springs are at rest is 2, inside of a polygon of 16 facets.
+    // The farthest it may stand from where the springs are at rest is 2, inside a polygon of 16 facets.
     for start in &starts[1..] {
         let far = parts(&start["slips"][0]["z_t"]);
         let far = far[0].hypot(far[1]);

@@ -152,8 +152,8 @@ fn the_least_friction_and_thickness_of_an_arch() {
     }
 }
 
-/// Three nodes in a row, each held down by a spring of its own (R_nn = k I), so that statics alone would let x_n grow: the
-/// collapse where f · 240 < 110 is found by the search through the schemes, which speaks of that f only.
+/// Three nodes in a row, each held down by a spring of its own (R_nn = k I), so that statics alone would let x_n grow:
+/// the collapse where f · 240 < 110 is found by the search through the schemes, which holds for that f only.
 #[test]
 fn a_proof_by_search_is_claimed_for_no_other_friction() {
     let text = r#"{ "format": "stickslip/1", "title": "row", "parameters": { "f": 0.5 },

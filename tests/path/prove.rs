@@ -250,8 +250,8 @@ fn is_collapse(system: &Value, proof: &Value) -> bool {
     free && (0..m).all(fits) && work > taken
 }
 
-/// Whether an altered proof still is one of the same claim, told without the checker: answers by the laws, all answers
-/// by those that the unaltered proof has.
+/// Whether an altered proof still is one of the same claim, judged without the checker: answers by the laws, all
+/// answers by those that the unaltered proof has.
 fn still_true(original: &Value, altered: &str, system: &str) -> bool {
     let (Ok(altered), Ok(system)) = (serde_json::from_str::<Value>(altered), serde_json::from_str::<Value>(system))
     else {
@@ -360,7 +360,7 @@ fn what_is_altered_is_rejected_or_still_a_proof_of_the_same() {
         let Ok(words) = said else { continue };
         accepted += 1;
         let about_other = original["claim"] == "answers" && original["system"] != Hash::of(system).long();
-        // What all answers of another system are, only enumeration tells.
+        // Only enumeration tells what all answers of another system are.
         let holds = match about_other {
             true => same_answers(system, proof),
             false => still_true(original, proof, system),

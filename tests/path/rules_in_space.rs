@@ -48,7 +48,7 @@ fn the_exported_lcp_has_the_facets_that_are_chosen() {
     }
 }
 
-/// A file does not go on under another polygon, or another cone.
+/// A file is not continued under another polygon, or with the cone switched.
 #[test]
 fn sweeps_under_other_facets_or_another_cone_are_other_sweeps() {
     let case = foot();

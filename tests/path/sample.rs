@@ -71,9 +71,9 @@ fn other_laws_of_one_parameter_are_exact_too() {
     assert!(found["notes"][0].as_str().unwrap().contains("cut off below 0"), "{found}");
 }
 
-/// A collapse for F2 > 600 f: ∫ (F2/600 − 0.2) dF2 over 120 … 200, over 0.4 · 100.
-/// Φ((1/4 − 0.4)/0.05) = Φ(−3) of the beam's friction do not hold 150 = 6 f F. The normal law has no ends: what lies beyond those
-/// that were followed is told, and is not undecided.
+/// A collapse for F2 > 600 f: ∫ (F2/600 − 0.2) dF2 over 120 … 200, over 0.4 · 100. With a normal friction a share
+/// Φ((1/4 − 0.4)/0.05) = Φ(−3) does not hold 150 = 6 f F. The normal law has no ends: what lies beyond those that were
+/// followed is reported, and is not undecided.
 #[test]
 fn tails_that_were_not_followed_are_told_apart() {
     let found = report(&mut beam("set F2 150"), "sample f = normal(0.4, 0.05)").unwrap();
@@ -83,7 +83,7 @@ fn tails_that_were_not_followed_are_told_apart() {
     assert!(notes.any(|note| note.contains("exact but for a share of 2e-9 beyond the ends")), "{found}");
 }
 
-/// No exact path leads over a length: points are drawn, and progress tells how many are ready.
+/// No exact path leads over a length: points are drawn, and progress shows how many are ready.
 #[test]
 fn points_over_a_geometry_are_counted_as_they_are_solved() {
     #[derive(Default)]
@@ -172,7 +172,7 @@ fn drawn_points_agree_with_the_exact_share() {
     assert!((median + 42.5).abs() < 2.0, "{found}");
 }
 
-/// A friction of 2 a − 0.5 is none for a < 0.25: what is refused is neither an answer nor a collapse.
+/// A friction of 2 a − 0.5 is negative for a < 0.25: what is refused is neither an answer nor a collapse.
 #[test]
 fn what_is_undecided_is_no_collapse() {
     let mut scenario = one_pair();

@@ -154,8 +154,8 @@ fn after_stages_quantities_mean_the_history() {
     assert!(text(&results[25]).contains("where the load history ended"), "{}", text(&results[25]));
 }
 
-/// In the isolator the pull goes 0, H, 0, −H, 0, four times its largest value; the weight of 0 … 4000 kN goes 10 200 kN or
-/// less, not three times as far. A load that only grows is told from one that grew before.
+/// In the isolator the pull goes 0, H, 0, −H, 0, four times its largest value; the weight of 0 … 4000 kN goes 10 200 kN
+/// or less, not three times as far. A load that only grows is told apart from one that grew before.
 #[test]
 fn a_history_is_drawn_over_the_load_that_goes_to_and_fro() {
     let commands = [

@@ -78,7 +78,8 @@ fn what_is_unloaded_sticks() {
         r#"[{ "weight": 1 }, { "weight": 1, "pull-x": 1, "pull-y": 1 }, { "weight": 1, "pull-x": 0.21, "pull-y": 0.21 },
             { "weight": 1 }, { "weight": 1, "pull-x": -1, "pull-y": -1 }]"#,
     ));
-    // To (|F| − f W)/k = 3 along (3, 4)/5; back to −(1 − ...): held at |F| ≥ 1, at F = 0 it stands at 2, then at −3.
+    // To (|F| − f W)/k = 3 along (3, 4)/5. Unloaded it is held down to |F| = 1; at F = 0 it stands at f W/k = 2, and at
+    // the opposite pull at −3.
     for (stage, (along, state)) in history.stages.iter().zip([
         (0.0, State::Stick),
         (3.0, State::Slip),
@@ -90,7 +91,7 @@ fn what_is_unloaded_sticks() {
         assert_eq!(stage.end.pairs[0].state, state, "{along}");
         assert!(stage.energy.expect("a structure").residual <= 1e-10, "{:?}", stage.energy);
     }
-    // The change is told where it is: 4/5 of the way to 0 from 0.21 is behind … at |F| = 1.
+    // The change is reported where it is: at |F| = 1, which is 0.2 of the pulls.
     let turn = history.stages[3].moments.iter().find(|moment| !moment.changes.is_empty()).expect("a change");
     near("where it slips back", turn.factors[1], 3.0 * 0.2, 1e-5, 3.0);
     assert!(turn.sentence.contains("slips"), "{}", turn.sentence);

@@ -63,7 +63,7 @@ fn merged(files: &[PathBuf]) -> Result<(usize, Vec<u8>), SweepFileError> {
     Ok((shards.rows(), out))
 }
 
-/// Stops after so many questions, as Ctrl-C at some moment does.
+/// Stops after this many questions, as Ctrl-C at some moment does.
 struct Stop(AtomicUsize);
 
 impl Watch for Stop {
@@ -188,7 +188,7 @@ fn altered_rows_are_refused() {
         let body: Vec<&str> = foreign.split_inclusive('\n').skip(first).collect();
         fs::write(&path, format!("{}{}", lines[..first].concat(), body.concat())).expect("written");
         assert!(matches!(run_to_file(&sweep, &path, true, &Quiet), Err(SweepFileError::Row { row: 1, .. })));
-        // a header that tells other points
+        // a header that states other points
         for (from, to, part) in [
             ("F2=0:400:50", "F2=0:200:25", "row 2 is not"),
             ("F2=0:400:50", "F2=0:200:50", "tells 9 points"),

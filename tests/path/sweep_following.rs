@@ -116,7 +116,7 @@ fn answers_that_follow_one_another_are_those_of_cold_runs_to_the_last_bit() {
             }
         }
     }
-    // Each kind is followed; where there may be several answers not all is claimed to be unique.
+    // Each kind is followed; where there may be several answers, not all are claimed to be unique.
     assert!(followed.iter().take(3).all(|followed| *followed > 150), "{followed:?} {proved:?} of {all}");
     assert!(proved[3] < all / 5, "{proved:?} of {all}");
 }

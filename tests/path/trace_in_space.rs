@@ -54,7 +54,7 @@ fn a_slider_on_two_springs_over_a_pull_and_over_friction() {
     }
 }
 
-/// Unloaded, the slider holds up to f W = 2 along whatever way, and begins to slip that way; of both pulls at once.
+/// Unloaded, the slider holds up to f W = 2, and begins to slip towards the pull.
 #[test]
 fn a_slip_begins_towards_its_load() {
     let mut session = embedded("bearing-two-way");

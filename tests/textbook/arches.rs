@@ -1,5 +1,5 @@
-//! Voussoir arches of rigid-ish blocks: limits against an equilibrium linear program computed elsewhere (SciPy/HiGHS),
-//! certificates judged from geometry and loads alone.
+//! Voussoir arches of nearly rigid blocks: limits against an equilibrium linear program computed elsewhere
+//! (SciPy/HiGHS), certificates judged from geometry and loads alone.
 
 use std::f64::consts::PI;
 

@@ -17,7 +17,7 @@ pub fn check(case: &Case, set: &[(&str, f64)], rules: Rules) -> bool {
     for (name, value) in set {
         values.insert((*name).to_owned(), *value);
     }
-    // Geometry and loads may stand under the values.
+    // Geometry and loads may depend on the values.
     let redone = case.scenario.uses.between(&case.scenario.parameter_values(), &values);
     let moved = (redone > Redone::Lcp).then(|| case.at(&values));
     let case = moved.as_ref().unwrap_or(case);

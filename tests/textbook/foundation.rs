@@ -124,7 +124,7 @@ fn contact_length_and_moment() {
             let n = inside + inside / 4;
             let answer = half_beam(half, n as f64 * h, n).solve(&[]);
             is_answer(&answer);
-            // Nothing lies on what has no foundation.
+            // The part without a foundation has lifted off.
             assert!(displacement(&answer, "middle")[1] > 0.0);
             measured(&answer, h)
         });

@@ -154,7 +154,8 @@ fn the_patch_test_passes_through_the_joint() {
     bodies(&flat, [vec![0.0, 0.1, 0.7, 1.1, 2.0], even(6, 2.0)], true, 0.0, "triangles against quads");
     bodies(&flat, [even(5, 2.0), even(4, 2.0)], false, 0.7, "turned by 0.7");
     bodies(&slanted, [even(5, 2.0), even(4, 2.0)], true, 0.0, "inclined");
-    // With a corner at every node the pairs must belong to the finer side: a force at a corner does not tell its legs.
+    // With a corner at every node the pairs must belong to the finer side: a force at a corner does not show how its
+    // two sides share it.
     let upper = Body { id: "u", columns: even(4, 2.0), bottom: &bent, top: &up, triangles: false };
     let lower = Body { id: "l", columns: even(8, 2.0), bottom: &down, top: &bent, triangles: false };
     patch(&upper, &lower, false, 0.0, "chords, 1 to 2");

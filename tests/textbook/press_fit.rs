@@ -1,4 +1,4 @@
-//! Press fit of two rings of one material: Lamé, and how fast the mesh comes to him.
+//! Press fit of two rings of one material: Lamé, and how fast the mesh converges to his solution.
 //!
 //! ```text
 //!   inner ring a … b, outer ring b … c, too large by d in radius:

@@ -34,7 +34,7 @@ fn mirrored(q: &Turn) -> bool {
     q[0][0] * q[1][1] - q[0][1] * q[1][0] < 0.0
 }
 
-/// The bars of both bodies; what each is hangs on `bits`.
+/// The bars of both bodies; what each is depends on `bits`.
 fn bars(bits: &[bool]) -> Vec<Value> {
     let mut bars = Vec::new();
     for (body, edges) in [

@@ -17,7 +17,7 @@ fn vector(rotation: &Rotation3<f64>, x: f64, y: f64, z: f64) -> Value {
     json!((rotation * Vector3::new(x, y, z)).as_slice())
 }
 
-/// A cantilever along x whose tip is pressed by N, pushed aside by P and pulled by T; shoe and guides as told.
+/// A cantilever along x whose tip is pressed by N, pushed aside by P and pulled by T; shoe and guides as given.
 pub(super) fn guided(rotation: &Rotation3<f64>, contacts: &[(&str, [f64; 3], &str, &str)]) -> Case {
     let v = |x: f64, y: f64, z: f64| vector(rotation, x, y, z);
     let load = |force: Value| json!([{ "point": { "at": "B", "force": force } }]);
@@ -108,7 +108,7 @@ fn shoe_between_guides() {
     }
 }
 
-/// Without clearance and friction the sides hold the tip aside: x_low − x_up = P, of least norm (P, 0); said to be so.
+/// Without clearance and friction the sides hold the tip aside: x_low − x_up = P, of least norm (P, 0); a note says so.
 #[test]
 fn guide_without_clearance_in_space() {
     let case = guided(&Rotation3::identity(), &SIDES);

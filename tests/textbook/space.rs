@@ -327,7 +327,7 @@ fn a_block_slides_at_the_same_force_every_way() {
         near_all("friction", &[friction(0), friction(1)], &[-f * angle.cos(), -f * angle.sin()], 1e-5);
         let beyond = at(f * (1.0 + 1e-5));
         assert_eq!(beyond.outcome, OutcomeKind::Ray, "{angle}");
-        // Of a polygon that held it nothing is left to be missing: p may be 0.
+        // Where the polygon held it, nothing is missing: p may be 0.
         let ray = beyond.ray.as_ref().expect("a ray");
         assert_eq!(ray.verdict, Some(Verdict::Certified), "{angle}");
     }

@@ -177,8 +177,8 @@ fn a_frame_by_elements_and_by_its_stiffness() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// A free beam on two feet: K is singular, and its rigid motions are found. H slides at f W, and the answer below holds
-/// x_n as the lever says: W at 1 of 4.
+/// A free beam on two feet: K is singular, and its rigid motions are found. H slides at f W, and the answer below has
+/// x_n by the lever rule: W at 1 of 4.
 #[test]
 fn a_free_body_slides_at_its_limit() {
     let folder = folder("free");
@@ -205,7 +205,7 @@ fn a_free_body_slides_at_its_limit() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// What only contact holds is told of the superelement as of a body.
+/// What only contact holds is said of the superelement as of a body.
 #[test]
 fn a_free_superelement_is_told_as_one_body() {
     let folder = folder("loose");

@@ -133,7 +133,7 @@ fn portal() {
         let mut rough = Begun::of("portal", &format!("L={l} h={h} b={b} q={q} W=1 f=1.5"));
         rough.expect("limit wind", q * l * ((l + b) / 2.0 / h).min(1.5), 0.0, 1e-6);
     }
-    // Here the path leads on beyond the limit for rounding only: runs of their own bracket it.
+    // Here the path leads on beyond the limit only by rounding: runs of their own bracket it.
     for (h, f) in [(7.0_f64, 0.1_f64), (7.0, 0.2), (3.0, 1.5)] {
         let mut frame = Begun::of("portal", &format!("L=8 h={h} b=0.2 q=10 W=1 f={f}"));
         frame.expect("limit wind", 80.0 * f.min(8.2 / 2.0 / h), 0.0, 1e-6);

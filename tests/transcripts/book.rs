@@ -21,7 +21,7 @@ use std::process::{Command, Output};
 use jsonc_parser::ParseOptions;
 use jsonc_parser::cst::CstRootNode;
 
-/// A fenced block of a page: the words behind the fence, and its lines.
+/// A fenced block of a page: the words after the fence, and its lines.
 struct Block {
     words: Vec<String>,
     text: String,

@@ -11,8 +11,8 @@ use stickslip::watch::Quiet;
 
 use super::lines;
 
-/// A beam on a joint of two plates' kind: everything that can be exported is there. Two load combinations, two stages,
-/// a probe, an edge contact, a bar, a support.
+/// A block with a post, in which there is something of everything that can be exported: two load combinations, two
+/// stages, a probe, an edge contact, a bar, a support.
 const SCENARIO: &str = r#"{
   "format": "stickslip/1", "title": "Block with a post", "units": { "length": "m", "force": "kN" },
   "parameters": { "f": { "value": 0.5, "min": 0, "max": 1 }, "H": 30 },
@@ -370,7 +370,7 @@ fn every_picture_is_drawn_and_nothing_lies_over_its_texts() {
     assert_eq!(drawn.len(), 13, "{drawn:?}");
 }
 
-/// The states are told by shapes and in words, the load and the scale by their signs.
+/// The states are shown by shapes and in words, the load and the scale by their signs.
 #[test]
 fn a_picture_of_the_structure_has_a_legend_of_what_it_shows() {
     let folder = tempfile::tempdir().expect("a folder");

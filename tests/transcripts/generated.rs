@@ -14,7 +14,7 @@ use stickslip::model::schema::SCHEMA;
 use stickslip::session::commands::GROUPS;
 use stickslip::session::language::help::help;
 
-/// The page must be what the tables say; or is written so.
+/// The page must be what the tables say; with `UPDATE_README` it is written anew.
 fn compare(name: &str, text: &str) {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name);
     if std::env::var_os("UPDATE_README").is_some() {
@@ -152,7 +152,7 @@ fn jsonc(text: &str) -> Value {
     CstRootNode::parse(text, &ParseOptions::default()).unwrap().to_serde_value().unwrap()
 }
 
-/// Blanks behind commas and colons outside strings.
+/// Blanks after commas and colons outside strings.
 fn spaced(json: &str) -> String {
     let mut inside = false;
     let mut out = String::new();

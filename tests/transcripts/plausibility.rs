@@ -1,4 +1,5 @@
-//! Warnings of `check`: what is allowed and hardly meant. Each fires where it should, with its place, and nowhere else.
+//! Warnings of `check`: what is allowed but can hardly be meant. Each fires where it should, with its place, and
+//! nowhere else.
 
 use serde_json::{Value, json};
 use stickslip::model::embedded;

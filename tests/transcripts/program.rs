@@ -69,8 +69,8 @@ fn exit_statuses_of_the_program() {
     }
 }
 
-/// What the shell has beside the prompt, and what a wrong argument of a word of both is told; all others are pointed to the
-/// prompt, whose commands the full screen takes as they are.
+/// The commands that only the shell has. Help is the same for a command of the prompt however the shell is asked for
+/// it; where the shell does not have the command itself, it points to the prompt.
 #[test]
 fn every_command_is_known_where_it_is_given() {
     const SHELL_ONLY: [&str; 7] = ["replay", "merge", "serve", "schema", "doctor", "completions", "man"];

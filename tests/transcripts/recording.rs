@@ -145,7 +145,7 @@ fn codes(cell: &vt100::Cell) -> String {
     codes
 }
 
-/// A row as a terminal must be told it: the same text for the same looks.
+/// A row in the codes that a terminal needs: the same text for the same looks.
 fn row(screen: &vt100::Screen, row: u16) -> String {
     let (mut line, mut last) = (format!("\x1b[{};1H\x1b[0m", row + 1), String::new());
     for cell in (0..COLUMNS).map(|column| screen.cell(row, column).unwrap()) {
@@ -166,7 +166,7 @@ fn rows(screen: &vt100::Screen) -> Vec<String> {
     (0..ROWS).map(|number| row(screen, number)).collect()
 }
 
-/// A screen on which everything looks like this one, told anew.
+/// A screen on which everything looks like this one, written anew.
 fn told_anew(screen: &vt100::Screen) -> vt100::Parser {
     let mut parser = blank();
     parser.process(format!("\x1b[?25l{}\x1b[H", rows(screen).concat()).as_bytes());
@@ -177,7 +177,7 @@ fn blank() -> vt100::Parser {
     vt100::Parser::new(cells(ROWS), cells(COLUMNS), 0)
 }
 
-/// Types the script, and has each screen told: its place in the script, its terminal.
+/// Types the script, and hands over each screen: its place in the script, its terminal.
 fn play(mut told: impl FnMut(usize, &Terminal)) {
     let home = tempfile::tempdir().unwrap();
     let mut program = command(home.path(), "xterm-256color", &["tui", "beam"]);

@@ -56,7 +56,7 @@ fn what_was_set_is_kept_where_it_fits_and_the_rest_is_told() {
     assert_eq!(value(&session, "f"), 0.75);
 }
 
-/// The rules of the polygon are kept like all others, and dropped where the problem is none in space any more.
+/// The rules of the polygon are kept like all others, and dropped where the problem is no longer in space.
 #[test]
 fn rules_of_space_are_kept_in_space() {
     let folder = tempfile::tempdir().unwrap();

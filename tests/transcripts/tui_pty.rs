@@ -136,7 +136,7 @@ fn ctrl_z_gives_the_terminal_back_and_fg_takes_it_again() {
         let stat = format!("/proc/{id}/stat");
         let start = Instant::now();
         while start.elapsed() < PATIENCE {
-            // the state stands behind the name of the program
+            // the state stands after the name of the program
             let text = std::fs::read_to_string(&stat).unwrap_or_default();
             if text.contains(") T ") || text.is_empty() {
                 break;

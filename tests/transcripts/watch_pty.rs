@@ -60,14 +60,14 @@ fn a_watched_file_is_solved_when_it_is_saved_and_the_line_stays() {
     terminal.send("0");
     terminal.wait("the cursor", |screen| screen.contains("show x_t base0[1]"));
     terminal.send("\x03");
-    // a file with an error: the place is told, the session stays as it was
+    // a file with an error: the place is given, the session stays as it was
     save(folder.path(), "{ \"format\": \"stickslip/1\",\n  \"title\": }");
     terminal.wait("the place", |screen| screen.contains("b.json:2:"));
     terminal.ask("params", "0.6");
     // an editor that writes beside the file and renames
     replace(folder.path(), &block("three", "0.7"));
     terminal.wait("right again", |screen| screen.matches("b.json read again").count() == 2);
-    // one that is taken away is told once, and read when it comes back, also as it was
+    // one that is taken away is reported once, and read when it comes back, also as it was
     fs::rename(folder.path().join("b.json"), folder.path().join("away.json")).unwrap();
     terminal.wait("that it is gone", |screen| screen.contains("b.json is gone: the last answer stays"));
     terminal.ask("params", "0.7");

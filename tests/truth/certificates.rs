@@ -104,7 +104,8 @@ fn a_certificate_and_balanced_forces_exclude_each_other() {
         }
     }
     println!("certified {certified} ({exact} with exact equations), balanced {balanced}, neither {neither}");
-    // Orthonormal columns are rounded, so that motions without room may escape the exact equations: told as undecided.
+    // Orthonormal columns are rounded, so that motions without room may escape the exact equations: reported as
+    // undecided.
     assert!(certified > 150 && balanced > 150 && exact > 40, "{certified} {exact} {balanced}");
     assert!(neither * 20 <= certified, "{neither} of {certified} collapses are not certified");
 }

@@ -16,7 +16,7 @@ fn text(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
-/// Writes an LCP and says what `commands` print in JSON or text.
+/// Writes an LCP and returns what `commands` print in JSON or text.
 fn replay(folder: &Path, scenario: &Value, commands: &str, format: &str) -> String {
     fs::write(folder.join("case.json"), scenario.to_string()).expect("a file");
     fs::write(folder.join("case.stick"), format!("load case.json\n{commands}\n")).expect("a file");

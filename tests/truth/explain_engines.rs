@@ -221,8 +221,8 @@ fn no_claim_is_stronger_than_proved() {
     no_claim_too_strong(400, 21);
 }
 
-/// The second pair can be lifted off without any resistance, so that nothing but p moves its x_n; when the motion of the
-/// ray sets in, the rate of p is rounding, and x_n must not be told to fall by it.
+/// The second pair can be lifted off without any resistance, so that nothing but p moves its x_n; when the motion of
+/// the ray sets in, the rate of p is rounding, and x_n must not be said to fall by it.
 #[test]
 fn a_force_that_only_p_moves_does_not_fall_by_the_noise_of_p() {
     let mut rng = ChaCha8Rng::seed_from_u64(22);

@@ -216,7 +216,7 @@ impl Data {
             if mends.is_empty() {
                 return Some(state);
             }
-            // All at once, then one after the other by lot.
+            // All at once, then one after the other, drawn at random.
             let one = random.random_range(0..mends.len());
             for &(i, next) in if round < 20 { &mends[..] } else { &mends[one..=one] } {
                 schemes[i] = next;
@@ -317,8 +317,8 @@ pub(super) fn distances(data: &Data, history: &History, steps: usize) -> Option<
 }
 
 /// A step that contains an event is right to the order of what one step moves: small steps lead to the same ends if
-/// their distance falls with the step. How far they are apart at one number of steps is not a measure, a frame that gives
-/// way moves far in one step. Where in a step an event lies makes a factor of up to 4 of the 16 of the first order.
+/// their distance falls with the step. How far they are apart at one number of steps is no measure: a frame that gives
+/// way moves far in one step. First order is a factor of 16; where in a step an event lies may take up to 4 of it.
 pub(super) fn converges(distances: &[f64], steps: usize) -> bool {
     match distances {
         [first] => *first <= 4.0 / steps as f64,
@@ -327,8 +327,8 @@ pub(super) fn converges(distances: &[f64], steps: usize) -> bool {
     }
 }
 
-/// Whether a state close to a moment, by less than `near`, is led to 1e-6 of the way to `target` further on: far beyond
-/// what the search takes for rounding. `None` where there are too many schemes to go through.
+/// Whether a step of 1e-6 of the way to `target` leads from a moment to a state within `near` of it: the step is far
+/// beyond what the search takes for rounding. `None` where there are too many schemes to go through.
 pub(super) fn goes_on(data: &Data, moment: &Moment, target: &[f64], near: f64) -> Option<bool> {
     let old = data.displacements(&moment.pairs);
     let factors: Vec<f64> = moment.factors.iter().zip(target).map(|(now, to)| now + 1e-6 * (to - now)).collect();

@@ -106,7 +106,7 @@ $Elements
 $EndElements
 ";
 
-/// The text with the first `from` behind `after` replaced.
+/// The text with the first `from` replaced.
 fn changed(text: &str, from: &str, to: &str) -> String {
     assert!(text.contains(from), "{from:?} is not there");
     text.replacen(from, to, 1)
