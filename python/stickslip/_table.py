@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 try:
     import numpy
-except ImportError:  # the client does without
+except ImportError:  # the client works without it
     numpy = None
 
 

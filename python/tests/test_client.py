@@ -131,7 +131,7 @@ class Client(unittest.TestCase):
             "stages": [{"weight": 1}, {"weight": 1, "pull": 1}, {"weight": 1}],
         }), encoding="utf-8")
         with stickslip.open(file) as slider:
-            # pulled by 3 against f N = 1: the spring EA/L = 1 takes 2 and is as long; let go it stays at 1
+            # pulled by 3 against f N = 1: the bar of EA/L = 1 takes 2 and stretches by 2; let go, it stays at 1
             answer = slider.stages()
             slips = [stage["pairs"][0]["z_t"] for stage in answer.json["stages"]]
             self.assertTrue(all(math.isclose(a, b, abs_tol=1e-12) for a, b in zip(slips, [0, 2, 1])), slips)

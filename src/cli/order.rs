@@ -1,4 +1,4 @@
-//! Options may stand before the command: they are put behind it, where the grammar has them.
+//! Options may stand before the command: they are put after it, where the grammar has them.
 
 use std::ffi::OsString;
 
@@ -13,8 +13,8 @@ fn takes_value(grammar: &Command, long: &str) -> Option<bool> {
         .map(|argument| argument.get_action().takes_values())
 }
 
-/// The arguments with the options ahead of the command moved behind it. Where no command follows them, or one of them
-/// is unknown, everything stays as it is. Clap's own `help` takes no options: `help --help` becomes `help help`.
+/// The arguments with the options ahead of the command moved after it. Where no command follows them, or one of them is
+/// unknown, everything stays as it is. Clap's own `help` takes no options: `help --help` becomes `help help`.
 pub fn command_first(grammar: &Command, mut arguments: Vec<OsString>) -> Vec<OsString> {
     if let [_, word, option] = &mut arguments[..]
         && word == "help"

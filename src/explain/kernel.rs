@@ -4,7 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::contact::system::ContactSystem;
 
-/// Motions of the releasable joints that cost no energy: the kernel of R without what bound pairs hold.
+/// Motions of the releasable joints that cost no energy: the kernel of R without what bound pairs hold, an orthonormal
+/// column for each, over all joints.
 pub fn releasable_kernel(system: &ContactSystem) -> DMatrix<f64> {
     let held: Vec<usize> = (0..system.pairs.len()).filter(|&i| system.pairs[i].law.is_bilateral()).collect();
     let kernel = &system.kernel;

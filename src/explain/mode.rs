@@ -37,7 +37,7 @@ impl PartMotion {
 pub struct Mode {
     /// Displacements per node, in the order of the components.
     pub displacements: Vec<[f64; 6]>,
-    /// The parts that move; empty where the motion is none of rigid bars and plates.
+    /// The parts that move; empty where the motion is not one of rigid bars and plates.
     pub parts: Vec<PartMotion>,
 }
 

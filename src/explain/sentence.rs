@@ -1,4 +1,4 @@
-//! Pivots as changes of the working scheme, told in sentences.
+//! Pivots as changes of the working scheme, in sentences.
 
 use super::remedy::told_apart;
 use crate::answer::record::{PivotRecord, Turned, TurnedJoint};

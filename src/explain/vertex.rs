@@ -47,7 +47,7 @@ impl Naming<'_> {
     }
 }
 
-/// Value of a variable at a point.
+/// Value of a variable at a point; times [`Naming::unit`] it is the user's.
 pub fn value(point: &Point, variable: Variable) -> f64 {
     match variable {
         Variable::W(i) => point.w[i],

@@ -184,7 +184,7 @@ impl LoadPath {
         problem
     }
 
-    /// The factors of all cases at a factor of the followed one; behind them those of what loads grow by.
+    /// The factors of all cases at a factor of the followed one; after them those of what loads grow by.
     pub fn case_factors(&self, factor: f64) -> Vec<f64> {
         let mut all = self.all_factors.clone();
         self.parameter.drive(&mut all, factor);

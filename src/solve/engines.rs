@@ -121,7 +121,7 @@ pub fn kind(outcome: &Outcome) -> OutcomeKind {
     }
 }
 
-/// Every row of a mirrored LCP written out.
+/// Every row of a mirrored LCP written out, in its units.
 pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
     let n = lcp.full_size;
     let columns = lcp.primary_rows();

@@ -30,7 +30,7 @@ enum Kind {
     Clean,
     /// Given by the user, or to be typed again.
     Given,
-    /// Counts and ratios: no zeros behind their digits.
+    /// Counts and ratios: no trailing zeros.
     Plain,
 }
 
@@ -263,8 +263,8 @@ impl Table {
         Printed { head, unit, cells, width, least }
     }
 
-    /// Blocks of columns where they do not all stand beside each other: those that are told first stay, the first one is
-    /// repeated.
+    /// Blocks of columns where they do not all stand beside each other: those of the lowest rank come first, the first
+    /// column is repeated.
     fn folded(&self, columns: &[Printed], room: usize) -> Vec<Block> {
         let mut left: Vec<usize> = (1..columns.len()).collect();
         left.sort_by_key(|&index| self.columns[index].rank);

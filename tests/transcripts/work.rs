@@ -251,7 +251,7 @@ fn no_input_steers_the_terminal() {
     }
 }
 
-/// Without the colours that this program uses; red without bold is none of them outside a curve.
+/// Without the colours that this program uses; outside a curve, red without bold is not one of them.
 fn without_colours(text: &str) -> String {
     let mut plain = text.to_owned();
     for code in ["0", "1", "90", "32", "33", "1;31", "1;36", "35", "34", "36"] {

@@ -264,8 +264,8 @@ impl<'a> Maker<'_, 'a> {
         Ok(())
     }
 
-    /// Goes on through events that coincide in f64, in the order in which they come here, to the scheme behind them.
-    /// Whether the half goes on behind them: an event at its end in f64 may lie beyond it.
+    /// Goes on through events that coincide in f64, in the order in which they come here, to the scheme after them.
+    /// Whether the half goes on after them: an event at its end in f64 may lie beyond it.
     fn pass(&mut self, now: &mut Stretch<'a>, next: &Way, mut left: Vec<Event>) -> Result<bool, Refused> {
         while !left.is_empty() {
             let mut ends = Vec::new();

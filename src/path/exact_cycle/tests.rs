@@ -51,7 +51,7 @@ fn with_force(question: &Question<'_>, place: &mut Place) {
     place.force = force.collect();
 }
 
-/// No displacement of any joint at any place may be altered, however little: what was on a bound is not any more, or slips
+/// No displacement of any joint at any place may be altered, however little: what was on a bound no longer is, or slips
 /// short of it.
 #[test]
 fn a_loop_altered_by_any_displacement_is_none() {

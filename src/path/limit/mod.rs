@@ -44,7 +44,7 @@ fn bracketed(case: Case<'_>, name: &str, found: Limit) -> Result<Limit, PathErro
     let Some(beyond) = edge.collapse.as_ref().filter(|run| run.is_proved()) else { return Ok(found) };
     let bracket = Some([edge.answer.value, beyond.value]);
     if (edge.answer.value - beyond.value).abs() > BESIDE * size(beyond.value, found.present) {
-        // The proof refutes the end of the path, and nothing tells the limit closely.
+        // The proof refutes the end of the path, and nothing locates the limit closely.
         return Ok(Limit { factor: None, safety: None, collapse: None, bracket, ..found });
     }
     let collapse = case.at(name, beyond.value)?.case(case).solve()?.answer.ray;

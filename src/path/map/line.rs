@@ -15,7 +15,7 @@ const PROBES: [f64; 3] = [0.25, 0.625, 1.0];
 const BETWEEN: [f64; 3] = [0.5, 0.25, 0.75];
 /// The first such place is this near to the end of the path, as a share of the range.
 const BESIDE: f64 = 1e-9;
-/// How often a path may begin again behind the end of another.
+/// How often a path may begin again beyond the end of another.
 const AGAIN: usize = 8;
 /// Intervals of a line over a parameter without an exact path.
 const CELLS: usize = 24;
@@ -140,8 +140,8 @@ impl<'a> Lines<'a> {
         Lines { case, along, range, across, others, known: KnownCollapses::default() }
     }
 
-    /// The line at a value of `across`, how well it is known, and the collapses known behind it: those of `self` stay as they
-    /// are, so that lines may be looked at in any order. There may be an answer at one of `hints`.
+    /// The line at a value of `across`, how well it is known, and the collapses known after it: those of `self` stay as
+    /// they are, so that lines may be looked at in any order. There may be an answer at one of `hints`.
     ///
     /// # Errors
     /// A value that the scenario cannot take, an interruption.

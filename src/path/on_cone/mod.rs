@@ -70,12 +70,12 @@ pub struct ConePath {
 }
 
 impl ConePath {
-    /// The value at its end.
+    /// The value at its end, of what it is followed over.
     pub fn last(&self) -> f64 {
         self.places.last().map_or(self.start, |last| last.value)
     }
 
-    /// The limit, where it ends in one.
+    /// The limit, a value of what it is followed over, where it ends in one.
     pub fn limit(&self) -> Option<f64> {
         matches!(self.end, PathEnd::Collapse(_)).then(|| self.last())
     }
@@ -173,7 +173,7 @@ pub fn trace_friction(case: Case<'_>, solved: Option<&Solved>, name: &str, to: f
     Path::new(case, name, &Over::Friction).follow(solved.filter(|solved| solved.stands(true)), start, Some(to))
 }
 
-/// What lies behind the end of what Newton's method follows.
+/// What lies beyond the end of what Newton's method follows.
 enum Beyond {
     Jump(Box<Stand>),
     End(PathEnd),

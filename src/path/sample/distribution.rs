@@ -148,7 +148,7 @@ impl Law {
 }
 
 impl Distribution {
-    /// The value below which a share of 0 < p < 1 lies.
+    /// The value, in the unit of the parameter, below which a share of 0 < p < 1 lies.
     pub fn quantile(&self, p: f64) -> f64 {
         let Some(least) = self.least else { return self.law.quantile(p) };
         let cut = self.law.share(least);
@@ -187,7 +187,7 @@ impl Distribution {
 impl FromStr for Distribution {
     type Err = DistributionError;
 
-    /// `uniform(0.2,0.6)`; with `>=0` behind it, cut off below 0.
+    /// `uniform(0.2,0.6)`; with `>=0` after it, cut off below 0.
     fn from_str(text: &str) -> Result<Distribution, DistributionError> {
         let form = || DistributionError::Form(text.to_owned());
         let (whole, least) = match text.split_once(">=") {

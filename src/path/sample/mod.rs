@@ -218,7 +218,7 @@ fn cells(line: &str, format: Format, columns: &[String]) -> Vec<Value> {
     }
 }
 
-/// Whether a file of a sweep holds drawn points, read from behind its preamble: what they say.
+/// Whether a file of a sweep holds drawn points, read from the end of its preamble on: what they say.
 ///
 /// # Errors
 /// The file cannot be read.

@@ -76,7 +76,7 @@ pub enum Begin {
 /// Follows a structure through the given factors of all load cases.
 ///
 /// # Errors
-/// As [`follow`]; slips behind which there is no answer.
+/// As [`follow`]; slips from which there is no answer.
 pub fn follow_factors(case: Case<'_>, begin: &Begin, targets: &[Vec<f64>]) -> Result<History, PathError> {
     follow_until(case, begin, targets, &mut |_| false)
 }

@@ -233,7 +233,7 @@ impl Session {
         Ok(())
     }
 
-    /// What stands behind `from`: `all`, the numbers of each pair, or `PAIR=SLIP …`.
+    /// What follows `from`: `all`, the numbers of each pair, or `PAIR=SLIP …`.
     fn begin(&self, words: &[String]) -> Result<From, CommandError> {
         let text = words.join(" ").replace(['(', ')', ','], " ").replace("= ", "=");
         let words: Vec<&str> = text.split_whitespace().collect();
@@ -314,7 +314,7 @@ fn slip_of(parts: &[f64]) -> [f64; 2] {
     std::array::from_fn(|part| parts.get(part).copied().unwrap_or_default())
 }
 
-/// The slips of all pairs from `PAIR=SLIP …`, each of so many numbers; 0 of those that are not named.
+/// The slips of all pairs from `PAIR=SLIP …`, each of `parts` numbers; 0 for those that are not named.
 fn named_slips(words: &[&str], pairs: &[&str], parts: usize) -> Result<Vec<[f64; 2]>, CommandError> {
     let mut slips: Vec<Option<[f64; 2]>> = vec![None; pairs.len()];
     let mut words = words.iter().copied().peekable();

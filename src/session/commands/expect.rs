@@ -41,12 +41,12 @@ pub struct Expect {
     words: Vec<String>,
 }
 
-/// What the last `sample` tells.
+/// Probabilities of the last `sample`.
 const SAMPLED: [&str; 2] = ["collapse", "undecided"];
 
 pub const EXPECT: Command = Command { complete: words, keeps_error: true, ..Command::of::<Expect>("expect") };
 
-/// A word as it is; what there is of a list or an object.
+/// A value in a message: a word as it is, of a list its length, of an object its keys.
 fn shown(value: &Json) -> String {
     match value {
         Json::String(word) => word.clone(),
@@ -86,7 +86,7 @@ fn words(asked: &Asked<'_>) -> Vec<Candidate> {
     }
 }
 
-/// The entry of a report behind `groups[0].value`; a negative number counts from the end of a list.
+/// The entry of a report that a path like `groups[0].value` leads to; a negative number counts from the end of a list.
 ///
 /// # Errors
 /// What there is in the place of a key that is not there.

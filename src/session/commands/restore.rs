@@ -243,7 +243,7 @@ impl Session {
         let solved = if rebuilt.auto { Some(now.solve(io.watch)?) } else { None };
         let mut changes = |states: Vec<(String, State)>| -> Result<Vec<Change>, CommandError> {
             let mut changes = Vec::new();
-            // from the last one back: what cannot be had any more ends the way
+            // from the last one back: a state that can no longer be made ends the way
             for (command, state) in states.into_iter().rev() {
                 match state.setup(&mut scenarios, io) {
                     Ok(mut setup) => {

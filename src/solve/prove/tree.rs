@@ -11,7 +11,7 @@ use crate::lcp::exact::scalar::BigInt;
 /// More nodes than this make no tree that one would want to check.
 pub const MOST_NODES: usize = 5_000;
 
-/// After so many nodes …
+/// After this many nodes …
 const LOOK: usize = 500;
 /// … a tree is given up if, at this rate, it would need this many times the most nodes.
 const HOPELESS: usize = 4;

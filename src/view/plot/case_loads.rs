@@ -127,7 +127,8 @@ fn add(sums: &mut [[f64; 3]; 2], factor: f64, values: &[[f64; 3]; 2]) {
     }
 }
 
-/// What an element belongs to, for its weight: (0, a node of the membranes or solids that hang together), or (1, a bar).
+/// What an element belongs to, for its weight: (0, a node of the membranes or solids that are connected), or (1, a
+/// bar).
 fn owners(structure: &Structure) -> Vec<(usize, usize)> {
     let mut bodies = Groups::new(structure.nodes.len());
     for element in structure.elements.iter().filter(|element| element.shape().dimension() > 1) {

@@ -62,7 +62,7 @@ pub struct Chart {
     pub curves: Vec<Curve>,
     /// Names at abscissas, in ascending order; those that find room are shown, first and last before the others.
     pub names: Vec<(f64, String)>,
-    /// Abscissas between pieces that do not hang together.
+    /// Abscissas between pieces that are not connected.
     pub breaks: Vec<f64>,
     /// Values at the abscissa.
     pub values: Values,

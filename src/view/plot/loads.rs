@@ -19,7 +19,7 @@ pub enum LoadKind {
     Force,
     /// Per length of a bar.
     Line,
-    /// Of a bar, or of all membranes or solids that hang together, at its centre.
+    /// Of a bar, or of all membranes or solids that are connected, at its centre.
     Weight,
 }
 
@@ -95,7 +95,7 @@ impl Arrow {
     }
 
     /// Tail and tip as distances along it from its place, `apart` from that: from outside to its place, or away from it
-    /// where it pulls at the very end of the structure, whose middle is so far behind and whose size is `extent`.
+    /// where it pulls at the very end of the structure, whose middle lies `outward` behind and whose size is `extent`.
     pub fn span(&self, outward: f64, extent: f64, [shortest, longest]: [f64; 2], apart: f64) -> [f64; 2] {
         let longest = if self.kind == LoadKind::Line { 0.6 * longest } else { longest };
         let length = shortest + (longest - shortest) * self.share;

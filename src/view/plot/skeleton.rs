@@ -104,7 +104,7 @@ mod tests {
     use crate::view::projection::Viewpoint;
     use crate::view::tests::sample::block;
 
-    /// A block of 3 × 2 × 4 bricks has nodes within; the others tell its extent from every side.
+    /// A block of 3 × 2 × 4 bricks has nodes within; the others give its extent from every side.
     #[test]
     fn what_lies_within_solids_does_not_tell_their_extent() {
         let structure = block([3, 2, 4], [3.0, 1.0, 2.0]);

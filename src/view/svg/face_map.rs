@@ -30,7 +30,7 @@ pub fn figure(maps: &[FaceMap], beside: Option<&Chart>, about: &str) -> String {
         }
         cells(&mut drawing, map);
         bar(&mut drawing, map);
-        // the first tells the levels of characters
+        // the first one explains the levels of characters
         for note in map.notes().iter().skip(1) {
             drawing.paragraph(note, SMALL, "", GREY);
         }

@@ -68,7 +68,7 @@ struct Drawing {
     taken: Vec<[f64; 4]>,
 }
 
-/// A coordinate with two digits behind the point.
+/// A coordinate with two digits after the decimal point.
 fn px(value: f64) -> String {
     // far outside of any figure; keeps what is not finite out of the file
     let value = if value.is_finite() { value.clamp(-1e5, 1e5) } else { 0.0 };

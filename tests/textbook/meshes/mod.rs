@@ -371,7 +371,7 @@ fn groups_of_lines_are_bars() {
     assert!(members.iter().all(|m| m.bar == "m.Beam"));
     assert!((members[1].end.m - 3.0 * 16.0 / 8.0).abs() < 1e-10, "{}", members[1].end.m);
 
-    // Two trusses that do not hang together: a bar each, named by their numbers.
+    // Two trusses that are not connected: a bar each, named by their numbers.
     let text = "*NODE\n1, 0, 0\n2, 1, 0\n3, 0, 1\n4, 1, 1\n*ELEMENT, TYPE=T2D2, ELSET=Ties\n11, 1, 2\n12, 3, 4\n";
     fs::write(folder.path().join("t.inp"), text).expect("a file");
     let hold = |node: u8| json!({ "at": format!("m/{node}"), "fixed": ["x", "y"] });

@@ -41,8 +41,8 @@ const SHORT: f64 = 1e-7;
 const HERE: f64 = 1e-10;
 /// The longest leg, as a part of a stage: what happens and is undone within one would not be seen.
 const LONGEST: f64 = 0.125;
-/// A leg that was taken in at most so many steps is followed by one of twice its length: k (k + 1)/2 steps in all are worth
-/// most per length where k is near the largest.
+/// A leg that was taken in at most this many steps is followed by one of twice its length: k (k + 1)/2 steps in all are
+/// worth most per length where k is near the largest.
 const EASY: usize = 6;
 /// No stage has more legs than this.
 const LEGS: usize = 50_000;
@@ -157,7 +157,7 @@ impl SpaceWalk<'_> {
         shown.bound > 0.0 && shown.reserve() <= noise
     }
 
-    /// The length of the step across what happens at t, after so many others without a leg between them.
+    /// The length of the step across what happens at t, after `crowded` others without a leg between them.
     fn length_across(&self, course: &Course, t: f64, crowded: usize) -> Result<f64, PathError> {
         if crowded > CROWDED {
             let problem = along(self.place.laws.problem, course);
@@ -169,7 +169,7 @@ impl SpaceWalk<'_> {
         Ok(short(1.0 - t))
     }
 
-    /// One short step across whatever happens at t; what follows where there is no answer behind it.
+    /// One short step across whatever happens at t; what follows where there is no answer after it.
     fn cross(
         &mut self,
         course: &Course,
