@@ -82,8 +82,8 @@ impl Load<'_> {
     }
 }
 
-/// Looks until `end` for a motion that f64 sums prove or, where it has no room, rationals: what is proved depends on
-/// the motions, the load and the laws alone.
+/// Looks until `end` for a motion that is proved by f64 sums or, where it has no room, by rationals: what is proved
+/// depends on the motions, the load and the laws alone.
 pub fn certify_pairs(pairs: &[ConePair], motions: &FreeMotions, load: Load, end: Instant) -> CertificateSearch {
     let Some(mut program) = MotionProgram::new(pairs, motions, load, end) else { return CertificateSearch::default() };
     let certificate = program.with_room().or_else(|| program.confined());

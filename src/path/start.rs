@@ -70,7 +70,7 @@ pub enum PathError {
         /// What else it moves.
         why: String,
     },
-    /// A target that cannot be reached for.
+    /// An impossible target.
     #[error("{0}")]
     Target(String),
     /// The case, or the parameter of loads, does not act on any pair.

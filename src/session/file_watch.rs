@@ -16,7 +16,7 @@ use crate::text::hash::Hash;
 
 /// Between two looks: a change is seen, and seen to rest, within 0.15 s.
 const LOOK: Duration = Duration::from_millis(50);
-/// This many equal looks in a row are rest.
+/// This many equal looks in a row mean that a file is at rest.
 const REST: u32 = 2;
 /// This many where the file is empty or missing: half a second.
 const LONG_REST: u32 = 10;

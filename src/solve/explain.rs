@@ -133,7 +133,7 @@ impl Prepared {
     pub fn warnings(&self, scenario: &Scenario) -> Vec<Problem> {
         let mut warnings = plausible::warnings(scenario);
         if let Geometry::Structure { system, .. } | Geometry::Contact { system, .. } = &*self.geometry {
-            // A part on the wrong side is reported once.
+            // A contact on the wrong side is reported once.
             let told: Vec<String> = warnings.iter().map(|warning| warning.path.clone()).collect();
             warnings.extend(unpressed(scenario, system).into_iter().filter(|warning| !told.contains(&warning.path)));
         }

@@ -97,8 +97,8 @@ impl Case<'_> {
         Ok(solved.if_answer(self.rules.cone))
     }
 
-    /// As [`Case::solve_counted`]; where [`Case::is_unique`] holds, from the previous answer on this line if that leads
-    /// there.
+    /// As [`Case::solve_counted`], for values at which [`Case::is_unique`] holds: from the previous answer on this line
+    /// if that leads there.
     ///
     /// # Errors
     /// As [`Case::solve`].

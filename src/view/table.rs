@@ -28,7 +28,7 @@ enum Kind {
     Measured,
     /// The same, freed of its rounding already: beside a bound of 1e15 a force of 1 is not noise.
     Clean,
-    /// Given by the user, or to be typed again.
+    /// Given by the user, or typed again as they are read.
     Given,
     /// Counts and ratios: no trailing zeros.
     Plain,

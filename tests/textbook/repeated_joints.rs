@@ -186,8 +186,8 @@ fn random_frames_with_repeated_joints() {
 }
 
 /// A rigid sledge on two runners, pushed along the ground: one tangential joint repeats the other. What the run ends
-/// with is reported as what it is: p as much more pressing force and cohesion in both pairs would hold where f (W + 2
-/// p) + 2 p = H, and that is another p.
+/// with is reported as what it is: p as much more pressing force and cohesion in both pairs would hold it where
+/// f (W + 2 p) + 2 p = H, and that is another p.
 #[test]
 fn the_p_of_a_ray_is_not_called_the_missing_force() {
     let (w, h, f) = (10.0, 5.05, 0.5);

@@ -155,7 +155,7 @@ pub struct Cutter<'a> {
 pub enum LeftOut {
     /// It was stopped.
     Stopped,
-    /// The most lines did not tell its regions apart.
+    /// [`LINES`] lines did not tell its regions apart.
     Intricate,
 }
 

@@ -110,7 +110,7 @@ fn motion_of(contact: &ProvedContact, sum: Sum) -> Vec<BigRational> {
                         motion[joint] += rational(part) * &factor;
                     }
                 }
-                // The forms turn^k are of slips, not of forces: nothing of ζ.
+                // The forms turn^k are about slips, not forces: they contribute nothing to ζ.
                 let turns = if contact.tangents == 1 { 0 } else { contact.polygon.half() };
                 (0..turns).for_each(|_| drop(next()));
             }
