@@ -20,14 +20,13 @@ use crate::view::style::Style;
 ///
 /// Also names the parts that only contact holds, with their motions: where those are not wanted, a support is missing.
 /// Warns of what is allowed and hardly meant: a stiffness or weight that no material of that name has under the named
-/// units, sections and parameters in other units, normals that point down under what stands on the ground, parameters, materials and
-/// sections that nothing uses, loads on nothing, contacts that no load case presses while every joint is held.
-/// Warnings leave the exit status as it is. Of large structures the motions of the parts are looked at first; where they
-/// do not tell whether the loads press every contact, or whether a part moves in itself, the numbers are asked, for 10 s at
-/// most.
-/// Of a mesh (.msh, .inp): nodes, elements, groups with lengths and areas, the boundary by direction, and the
-/// worst element. Quality is the least sine of a corner's angle (of triangles by that of 60°):
-/// 1 is best, 0 degenerate.
+/// units, sections and parameters in other units, normals that point down under what stands on the ground, parameters,
+/// materials and sections that nothing uses, loads on nothing, contacts that no load case presses while every joint is
+/// held. Warnings leave the exit status as it is. Of large structures the motions of the parts are looked at first;
+/// where they do not tell whether the loads press every contact, or whether a part moves in itself, the numbers are
+/// asked, for 10 s at most. Of a mesh (.msh, .inp): nodes, elements, groups with lengths and areas, the boundary by
+/// direction, and the worst element. Quality is the least sine of a corner's angle (of triangles by that of 60°): 1 is
+/// best, 0 degenerate.
 #[derive(Args, Debug)]
 pub struct Check {
     /// Files, embedded scenarios or meshes; `-` reads a scenario from stdin

@@ -48,11 +48,11 @@ pub fn no_result(of_files: &[Problems]) -> Value {
 
 /// The result of one solve.
 ///
-/// `notes` are remarks on the answer, where there are any. A very long run keeps the records of its first pivots only; `pivot_count` then says how many there were.
-/// After a pivot limit, a breakdown or a failed check, `failure` says why, `pairs`, `displacements`, `members`, `reactions` and
-/// `solution` are absent and `ray` is null; at a ray the displacements, members and reactions are absent; for a
-/// contact system or a bare LCP they always are. `timings` only on request: two runs of one scenario are then
-/// the same to the byte.
+/// `notes` are remarks on the answer, where there are any. A very long run keeps the records of its first pivots only;
+/// `pivot_count` then says how many there were. After a pivot limit, a breakdown or a failed check, `failure` says why,
+/// `pairs`, `displacements`, `members`, `reactions` and `solution` are absent and `ray` is null; at a ray the
+/// displacements, members and reactions are absent; for a contact system or a bare LCP they always are. `timings` only
+/// on request: two runs of one scenario are then the same to the byte.
 pub fn result(answer: &Answer, scenario_name: &str, parameters: &ParameterValues, timings: bool) -> Value {
     let failed = answer.outcome.is_failure();
     let mut object = Map::new();

@@ -83,7 +83,8 @@ impl Prepared {
     /// Every answer for these values; in space every answer on the polygon of these rules.
     ///
     /// # Errors
-    /// Too many pairs or rows; a covering that does not fit the numbers. Stopped, what was found until then is returned as incomplete.
+    /// Too many pairs or rows; a covering that does not fit the numbers. Stopped, what was found until then is returned
+    /// as incomplete.
     pub fn all_answers(
         &self,
         values: &ParameterValues,

@@ -109,8 +109,8 @@ pub fn prepare(scenario: &Scenario, watch: &dyn Watch) -> Result<Prepared, Prepa
 /// Prepares a scenario under other parameter values.
 ///
 /// # Errors
-/// Values that make the model invalid; dependent joints, a mechanism in the main system, a model too large for memory, an unusable given matrix: each
-/// with its place in the file.
+/// Values that make the model invalid; dependent joints, a mechanism in the main system, a model too large for memory,
+/// an unusable given matrix: each with its place in the file.
 pub fn prepare_at(scenario: &Scenario, values: &ParameterValues, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
     let again;
     let scenario = match scenario.uses.between(&scenario.parameter_values(), values) {

@@ -1,6 +1,6 @@
 //! Balance of every part of a structure by hand: loads + contact forces + reactions (of supports and springs) = 0, in
-//! every direction and about every axis through a point (in the plane in x, in y and about a point), each part (what elements and ties join) by itself. Uses nothing of the finite elements but the
-//! answer they gave.
+//! every direction and about every axis through a point (in the plane in x, in y and about a point), each part (what
+//! elements and ties join) by itself. Uses nothing of the finite elements but the answer they gave.
 
 use stickslip::answer::record::{Answer, PairState};
 use stickslip::model::pair::Pair;

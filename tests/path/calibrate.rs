@@ -77,8 +77,9 @@ fn pairs_that_stick_tell_a_lower_bound_only() {
     assert!(shown.contains("f: anything from 0.4 to 1 explains as much"), "{shown}");
 }
 
-/// Three nodes in a row joined by springs k = 1000, each pressed by 100, the last one pulled by 110; the first also on a spring
-/// of 500. With all slipping: 500 z_a = 110 − 100 (fa + 2 fb), 1000 (z_b − z_a) = 110 − 200 fb, 1000 (z_c − z_b) = 110 − 100 fb.
+/// Three nodes in a row joined by springs k = 1000, each pressed by 100, the last one pulled by 110; the first also on
+/// a spring of 500. With all slipping: 500 z_a = 110 − 100 (fa + 2 fb), 1000 (z_b − z_a) = 110 − 200 fb, 1000 (z_c −
+/// z_b) = 110 − 100 fb.
 fn row(measured: &str) -> Session {
     let text = format!(
         r#"{{"format": "stickslip/1", "title": "row",
@@ -169,8 +170,9 @@ fn open_pairs_tell_nothing() {
     assert!(group["why"].as_str().unwrap().contains("open: nothing shows"), "{found}");
 }
 
-/// The beam slides as a whole where 6 f F < F2, below f = 250/600. More slip at the end than there: the least is at the end of the
-/// path; less than under f = 1: at that of the range. Neither has a standard error, because there the sum of squares slopes.
+/// The beam slides as a whole where 6 f F < F2, below f = 250/600. More slip at the end than there: the least is at the
+/// end of the path; less than under f = 1: at that of the range. Neither has a standard error, because there the sum of
+/// squares slopes.
 #[test]
 fn an_end_of_the_path_or_the_range_has_no_standard_error() {
     let mut session = beam();

@@ -283,9 +283,9 @@ fn slips_that_cannot_be_are_refused() {
     assert!(refusal.contains("cannot stand under the first loads with these slips"), "{refusal}");
 }
 
-/// A node on a spring, pressed by 1 and lifted by L, pushed aside by 0.2 L: it opens at L = 1, where it has gone 0.2, comes down
-/// there and sticks at x_τ = 0.2 (1 − L) < 0.5 (1 − L). Later cycles move it only while it is open, by 0.2 (3 − 1) to and
-/// fro, and lose nothing.
+/// A node on a spring, pressed by 1 and lifted by L, pushed aside by 0.2 L: it opens at L = 1, where it has gone 0.2,
+/// comes down there and sticks at x_τ = 0.2 (1 − L) < 0.5 (1 − L). Later cycles move it only while it is open, by 0.2
+/// (3 − 1) to and fro, and lose nothing.
 #[test]
 fn a_pair_that_moves_while_it_is_open_shakes_down() {
     let text = r#"{"format": "stickslip/1", "title": "lift", "parameters": {"L": 0},

@@ -148,8 +148,8 @@ fn several_answers_are_found_from_both_ends() {
     assert!(text(&mut session, "map T 0..2 f 1.3..1.8").contains("hatched: more than one answer"));
 }
 
-/// The arch of 21 blocks, 44 pairs: with so much friction it turns about joints and does not slide when it falls, at 0.148316546 g
-/// (limit analysis by an independent linear programme, eight digits) whatever the friction.
+/// The arch of 21 blocks, 44 pairs: with so much friction it turns about joints and does not slide when it falls, at
+/// 0.148316546 g (limit analysis by an independent linear programme, eight digits) whatever the friction.
 #[test]
 fn an_arch_of_44_pairs_is_mapped_to_its_end() {
     let mut session = session(embedded::load("arch").expect("embedded"));
@@ -166,8 +166,8 @@ fn an_arch_of_44_pairs_is_mapped_to_its_end() {
     }
 }
 
-/// Width and height of a block of weight 10 that 4 pushes at its top: it turns where 4 h > 5 b. No exact path leads over either,
-/// and that is said; the bound lies where halving finds it.
+/// Width and height of a block of weight 10 that 4 pushes at its top: it turns where 4 h > 5 b. No exact path leads
+/// over either, and that is said; the bound lies where halving finds it.
 #[test]
 fn two_lengths_are_mapped_by_answers_of_their_own() {
     let text = r#"{ "format": "stickslip/1", "title": "block",

@@ -9,7 +9,8 @@ use super::find::{near, number};
 use crate::common::lines::{read, report, text};
 use crate::common::scenario_text;
 
-/// A block of weight 2 with f = 1/2 pushed by (X, Y), on springs of `k` in all directions or rigid: it stands where |(X, Y)| ≤ 1.
+/// A block of weight 2 with f = 1/2 pushed by (X, Y), on springs of `k` in all directions or rigid: it stands where
+/// |(X, Y)| ≤ 1.
 fn block(k: f64) -> Session {
     read(&scenario_text(json!({
         "parameters": { "X": 0.1, "Y": 0.2, "f": 0.5 },

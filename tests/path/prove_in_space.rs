@@ -78,8 +78,8 @@ fn cross(a: &Vector, b: &Vector) -> BigRational {
     &a[0] * &b[1] - &a[1] * &b[0]
 }
 
-/// The law of the polygon: friction reaches no facet's bound from outside, and a slip is made of directions whose bounds are used
-/// up.
+/// The law of the polygon: friction reaches no facet's bound from outside, and a slip is made of directions whose
+/// bounds are used up.
 fn is_answer(system: &Value, proof: &Value) -> bool {
     let Some(z) = unknowns(system, &proof["values"]) else { return false };
     let Some(half) = proof["directions"].as_array() else { return false };

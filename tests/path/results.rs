@@ -11,8 +11,8 @@ fn all(session: &mut Session, lines: &str) {
     }
 }
 
-/// The beam slides at F2 = 6 f F = 600 f; supports from the end on slip at every hundred f before. Areas of f 0…1, F2 0…400: the
-/// triangles under 100 f are 50 each, cut off by F2 = 400 from 400 f on.
+/// The beam slides at F2 = 6 f F = 600 f; supports from the end on slip at every hundred f before. Areas of f 0…1, F2
+/// 0…400: the triangles under 100 f are 50 each, cut off by F2 = 400 from 400 f on.
 #[test]
 fn every_result_can_be_expected() {
     let folder = tempfile::tempdir().unwrap();

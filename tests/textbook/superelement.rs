@@ -379,8 +379,8 @@ fn invalid_superelements() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// The example scripts write what they say: a beam of two spans with P in each carries 0.3125 · P at its ends and 1.375 · P in the
-/// middle, from K as from R and RF; the pull of 1 stays where it acts.
+/// The example scripts write what they say: a beam of two spans with P in each carries 0.3125 · P at its ends and 1.375
+/// · P in the middle, from K as from R and RF; the pull of 1 stays where it acts.
 #[test]
 fn the_example_scripts() {
     let folder = folder("python");

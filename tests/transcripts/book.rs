@@ -1,5 +1,5 @@
-//! The README, CONTRIBUTING and the pages of `docs/`: what they show to type is typed. Of each page, in a folder of its own beside the
-//! scenarios and the examples,
+//! The README, CONTRIBUTING and the pages of `docs/`: what they show to type is typed. Of each page, in a folder of its
+//! own beside the scenarios and the examples,
 //!
 //! * blocks ```` ```LANGUAGE file=NAME ```` are written to files,
 //! * the lines of blocks ```` ```sh ```` are run by a shell, `stickslip` being the program under test,

@@ -131,7 +131,8 @@ impl Problem {
         None
     }
 
-    /// Whether R is positive definite by more than the rounding of its entries, exactly: then an answer exists (Haslinger 1983).
+    /// Whether R is positive definite by more than the rounding of its entries, exactly: then an answer exists
+    /// (Haslinger 1983).
     fn is_definite(&self) -> bool {
         let n = 2 * self.pairs();
         let mut a: Vec<Vec<Exact>> = self.r.iter().map(|row| row.iter().map(|v| exact(*v)).collect()).collect();

@@ -51,8 +51,9 @@ pub struct StageResult {
     /// What the ends of its legs may be wrong by, as a share of the largest displacement, where directions of slip turn
     /// on the way: the sum of the last corrections. `None` where every way is straight.
     pub estimated_error: Option<f64>,
-    /// The state at its end as an answer, where a pair on the limit at which it slipped last is shown as slipping; a ray, with the state at which it was met, where the history ended in a limit.
-    /// The last stage's has the attempts and pivots of the last rate problem, whose forces are rates per whole stage.
+    /// The state at its end as an answer, where a pair on the limit at which it slipped last is shown as slipping; a
+    /// ray, with the state at which it was met, where the history ended in a limit. The last stage's has the attempts
+    /// and pivots of the last rate problem, whose forces are rates per whole stage.
     pub end: Answer,
 }
 

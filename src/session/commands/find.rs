@@ -21,10 +21,11 @@ use crate::session::{CommandError, Next, Output, Session, worker};
 /// Find the values of a parameter or load at which a quantity is as wanted
 ///
 /// `find NAME [A..B] where QUANTITY < | = | > VALUE` (or `QUANTITY WORD`) tells every interval and place in the range,
-/// which is that of the slider if it is left out. Where an exact path leads over NAME (loads, friction) they are
-/// exact and in order, in space found along Coulomb's cone in steps; elsewhere (geometry, stiffness) they are brackets between answers of their own.
-/// `find least|most NAME [A..B] where outcome answer` brackets the first value with an answer between a checked answer
-/// and a proved collapse; with another condition it is the first or the last place at which that holds.
+/// which is that of the slider if it is left out. Where an exact path leads over NAME (loads, friction) they are exact
+/// and in order, in space found along Coulomb's cone in steps; elsewhere (geometry, stiffness) they are brackets
+/// between answers of their own. `find least|most NAME [A..B] where outcome answer` brackets the first value with an
+/// answer between a checked answer and a proved collapse; with another condition it is the first or the last place at
+/// which that holds.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  find F2 0..400 where z_t c3 > 0\n  find f 0..1 where x_t c1 = -50\n  find F2 where state c3 = slip+\n  find most F2 where outcome answer"

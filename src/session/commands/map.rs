@@ -24,11 +24,11 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// Cut the plane of two parameters into its regions of equal working scheme
 ///
 /// `map P [A..B] Q [C..D] [of QUANTITY]`: parameters or load cases, horizontal and vertical; the ranges are those of
-/// the sliders where they are left out. One of the two is followed on its path, exact in the plane, while the other stands still;
-/// where the order of the schemes changes is found to the last digits. Each region gets its area, and at a place inside
-/// its states, or the collapse with its motion and what is proved of it, and the quantity. In small problems other
-/// answers are looked for there; their regions are hatched. Ctrl-C draws what is known by then. `export map FILE.svg|.json` writes the last map; in the full
-/// screen a cursor in it shows the answer at any place.
+/// the sliders where they are left out. One of the two is followed on its path, exact in the plane, while the other
+/// stands still; where the order of the schemes changes is found to the last digits. Each region gets its area, and at
+/// a place inside its states, or the collapse with its motion and what is proved of it, and the quantity. In small
+/// problems other answers are looked for there; their regions are hatched. Ctrl-C draws what is known by then. `export
+/// map FILE.svg|.json` writes the last map; in the full screen a cursor in it shows the answer at any place.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  map f 0..1 F2 0..400\n  map f 0..1 F2 0..400 of z_t c6")]
 pub struct Map {

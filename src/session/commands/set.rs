@@ -15,9 +15,9 @@ use crate::text::number::short;
 /// VALUE is a number; `110%` of the present value; `+10%` or `-10%` more or less than it; or `+= 10`, `-= 10`,
 /// `*= 2`, `/= 2`. A value outside min … max is accepted: the range is the slider's.
 ///
-/// Rules: `set covering cohesive|ones|weight`, `set tie-break lexicographic|natural|first-row|random:SEED`,
-/// `set engine scheme|tableau|exact`; they hold for `solve`, not for the rate problems of `stages`. `set auto off` stops solving after each change until `solve` or
-/// `set auto on`.
+/// Rules: `set covering cohesive|ones|weight`, `set tie-break lexicographic|natural|first-row|random:SEED`, `set engine
+/// scheme|tableau|exact`; they hold for `solve`, not for the rate problems of `stages`. `set auto off` stops solving
+/// after each change until `solve` or `set auto on`.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  set F2 120\n  set F2 += 10\n  set f 110%\n  set covering weight")]
 pub struct Set {

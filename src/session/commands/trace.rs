@@ -26,10 +26,10 @@ use crate::view::style::Style;
 
 /// Follow the answer over a load or a friction coefficient: every breakpoint, exactly
 ///
-/// NAME is a load case, a parameter in which the loads are linear, or a friction parameter. A load is followed from its present factor
-/// upwards (from 0 where there is no answer now) to the target, a turning point or its limit; friction up to the
-/// target, or else to the end of the slider. In space the answer is followed on Coulomb's cone in steps, and breakpoints are
-/// searched for between two of them. `plot path` and `export path` show the way afterwards.
+/// NAME is a load case, a parameter in which the loads are linear, or a friction parameter. A load is followed from its
+/// present factor upwards (from 0 where there is no answer now) to the target, a turning point or its limit; friction
+/// up to the target, or else to the end of the slider. In space the answer is followed on Coulomb's cone in steps, and
+/// breakpoints are searched for between two of them. `plot path` and `export path` show the way afterwards.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  trace pull\n  trace F2 to 400\n  trace f to 1\n  trace pull --through\n  trace pull to 260 of x_t c6, max z_t"

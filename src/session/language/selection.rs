@@ -90,8 +90,8 @@ impl<'w> Rows<'w> {
 
     /// Indices of the rows that are named, in the order of the names; all of them without names.
     ///
-    /// A name is an id, a range `A..B` or `joint[0..4]` of them, a pattern with `*`, or what stands before a bracket: `joint` for all
-    /// `joint[…]`.
+    /// A name is an id, a range `A..B` or `joint[0..4]` of them, a pattern with `*`, or what stands before a bracket:
+    /// `joint` for all `joint[…]`.
     ///
     /// # Errors
     /// A name that fits none.

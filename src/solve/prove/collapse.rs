@@ -185,7 +185,8 @@ fn length_above(along: &BigRational, across: &BigRational) -> BigRational {
     }
 }
 
-/// a + b of a slip a d_k + b d_(k+1), a and b ≥ 0: the most that forces within the polygon can do on it per unit of their bound.
+/// a + b of a slip a d_k + b d_(k+1), a and b ≥ 0: the most that forces within the polygon can do on it per unit of
+/// their bound.
 fn gauge(polygon: Polygon, along: &BigRational, across: &BigRational) -> Option<BigRational> {
     let directions: Vec<[BigRational; 2]> =
         (0..polygon.facets()).map(|facet| polygon.direction(facet).map(rational)).collect();

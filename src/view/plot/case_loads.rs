@@ -170,8 +170,8 @@ mod tests {
     use crate::view::plot::depth::Seen;
     use crate::view::tests::sample::cantilever;
 
-    /// A cantilever of two elements of 2 under a line load of −10, pulled at its tip by 3 in a case of its own; the tip moves by
-    /// (0.1, 0.2), drawn ten times as far, and the cases act twice and minus once.
+    /// A cantilever of two elements of 2 under a line load of −10, pulled at its tip by 3 in a case of its own; the tip
+    /// moves by (0.1, 0.2), drawn ten times as far, and the cases act twice and minus once.
     #[test]
     fn loads_of_cases_are_multiplied_and_go_along_with_their_nodes() {
         let (mut structure, ..) = cantilever();

@@ -221,7 +221,8 @@ impl Scene {
         }
     }
 
-    /// Adds a force along every bar of the structure, positive values on the side of [`BarLine`]. The largest ordinate is an eighth of the model.
+    /// Adds a force along every bar of the structure, positive values on the side of [`BarLine`]. The largest ordinate
+    /// is an eighth of the model.
     pub fn with_diagrams(mut self, structure: &Structure, members: &[MemberForces], force: Internal) -> Scene {
         let all: Vec<(&Bar, Series)> =
             structure.bars.iter().filter_map(|bar| Some((bar, diagram::series(members, &bar.id, force)?))).collect();

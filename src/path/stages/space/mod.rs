@@ -1,10 +1,10 @@
 //! Load histories in space, on Coulomb's cone (method §7).
 //!
-//! Directions of slip turn on the way, so that rates are not constant between two events. The law is the one of the rate
-//! problem all the same: eq. (8) in increments from the slips just before ([`crate::path::cone_step`]), as the increments get short.
-//! From event to event the way is taken in legs ([`leg`]) whose ends are extrapolated to steps of no length, as exactly as
-//! is asked for; an event is crossed in one step so short that nothing can turn in it. A step begins from the one before,
-//! and where that leads nowhere from the answer on the friction polygon.
+//! Directions of slip turn on the way, so that rates are not constant between two events. The law is the one of the
+//! rate problem all the same: eq. (8) in increments from the slips just before ([`crate::path::cone_step`]), as the
+//! increments get short. From event to event the way is taken in legs ([`leg`]) whose ends are extrapolated to steps of
+//! no length, as exactly as is asked for; an event is crossed in one step so short that nothing can turn in it. A step
+//! begins from the one before, and where that leads nowhere from the answer on the friction polygon.
 
 mod leg;
 

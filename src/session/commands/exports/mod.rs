@@ -38,9 +38,9 @@ use exported::Exported;
 /// 4 closed) and the vectors of force, friction and slip. `export vtu FILE.pvd` is a series, of the moments of the
 /// history after `stages`, else of the pivots: FILE-0000.vtu, FILE-0001.vtu … stand beside it.
 ///
-/// Pictures go to .svg: `slip`, `force`, `gap`, `pressure` and `traction` of the state shown or at pivots that are named; `moment`,
-/// `shear` and `axial` of all bars on the structure, or of the bar that is named; `path` as `plot path` draws it, with
-/// the same words.
+/// Pictures go to .svg: `slip`, `force`, `gap`, `pressure` and `traction` of the state shown or at pivots that are
+/// named; `moment`, `shear` and `axial` of all bars on the structure, or of the bar that is named; `path` as `plot
+/// path` draws it, with the same words.
 ///
 /// `export lcp` writes M, q and the covering d, in the units of the scenario: to .json as a scenario of this program,
 /// or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format; a scenario reads M back with
