@@ -26,6 +26,7 @@ pub mod record;
 pub mod route;
 pub mod sample;
 pub mod sensitivity;
+pub mod shakedown_limit;
 pub mod stages;
 pub mod start;
 pub mod static_shakedown;

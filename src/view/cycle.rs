@@ -7,9 +7,10 @@ use super::path::exact;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::model::units::Units;
-use crate::path::cycle::{Cycle, Kind, ShakedownLimit, Turn};
+use crate::path::cycle::{Cycle, Kind, Turn};
 use crate::path::cycle_starts::Starts;
 use crate::path::exact_cycle::{MOST_PAIRS as MOST_PROVED_PAIRS, MOST_SCHEMES, Repetition, SlipMap};
+use crate::path::shakedown_limit::ShakedownLimit;
 use crate::path::static_shakedown::{MOST_PAIRS, Static};
 use crate::text::number::{measured, short, with_unit};
 

@@ -1,7 +1,8 @@
 //! The way of the data is the order of the folders: a module may import only what stands before it. And only faces
-//! print. Only a test keeps such a promise. (Test code inside `src` is left alone.)
+//! print, and nothing grows too long. Only a test keeps such a promise. (Test code inside `src` is left alone.)
 
 mod circles;
+mod sizes;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -16,6 +16,7 @@ mod load_amounts;
 mod map;
 mod map_in_space;
 mod prove;
+mod prove_altered;
 mod prove_in_space;
 mod random;
 mod results;

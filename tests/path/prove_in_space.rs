@@ -12,7 +12,8 @@ use stickslip::lcp::exact::dyadic::rational;
 use stickslip::model::embedded;
 
 use super::find::{report, session};
-use super::prove::{Texts, altered, checked, contact, forces, of, proved};
+use super::prove::{Texts, checked, contact, forces, of, proved};
+use super::prove_altered::altered;
 
 fn random_proofs(seed: u64, count: usize) -> Vec<(Value, Texts)> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
