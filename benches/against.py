@@ -2,7 +2,7 @@
 """Stickslip's engine and the Lemke solvers of PyPI on the same contact LCPs, alternating in one run.
 
     pip install -r benches/requirements.txt
-    cargo build --release --example measure
+    cargo build --release -p stickslip-benches --example measure
     python benches/against.py [--pairs 100 300 1000] [--friction 0.1 0.4 2] [--repetitions 7]
 
 Every solver gets the same exported M, q and d. Stickslip's time goes from R, RF and f to the last vertex computed

@@ -2,7 +2,7 @@
 """R of two plates by stickslip, the Schur complement of the same matrices by MUMPS, and the bare factorization by PARDISO.
 
     pip install -r benches/requirements.txt        # python-mumps needs the library: libmumps-seq-dev, libopenblas-dev
-    cargo build --release --example measure
+    cargo build --release -p stickslip-benches --example measure
     RAYON_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1 python benches/schur.py [--pairs 401 1000 2000]
     … python benches/schur.py --bricks 30 30 10         # a block of bricks on a plane instead
 

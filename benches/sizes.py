@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Condensation by size: time and memory against unknowns and pairs, with fitted exponents; warm starts; start-up.
 
-    cargo build --release --example measure --bin stickslip
+    cargo build --release -p stickslip -p stickslip-benches --bin stickslip --example measure
     python benches/sizes.py unknowns | pairs | cases | warm | start     (needs nothing but Python)
 """
 

@@ -11,7 +11,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::problem::ContactProblem;
-use crate::lcp::dense::Factor;
+use stickslip_numerics::decompositions::Factor;
 
 /// A pair as it stands in an answer on the cone.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,8 +8,8 @@ use super::file_data::FileData;
 use super::pivoted::{NullSpace, PivotedCholesky, is_null, orthonormal};
 use super::system::{ContactPair, ContactSystem, ForceForm, JointLoad};
 use crate::lcp::problem::NOISE;
-use crate::lcp::smallest_eigenvalue;
 use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
+use stickslip_numerics::decompositions::smallest_eigenvalue;
 
 /// An eigenvalue below −this makes a matrix unusable, after scaling to unit diagonal.
 const NEGATIVE: f64 = 1e-9;

@@ -10,7 +10,7 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::doubled::dot;
-use crate::lcp::subtract_square;
+use stickslip_numerics::products::subtract_square;
 
 /// A row of A z below this share of its terms is zero by the digits of A.
 const DIGITS: f64 = 64.0 * f64::EPSILON;

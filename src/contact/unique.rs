@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::problem::ContactProblem;
 use super::system::ContactSystem;
-use crate::lcp::dense::Cholesky;
+use stickslip_numerics::decompositions::Cholesky;
 
 /// Weights of the normal joints that are tried.
 const WEIGHTS: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0];

@@ -10,9 +10,9 @@
 //! z is carried along as further rows that are not eliminated ([`super::supernodes`]), so the sparsity of C is used
 //! to the end. How the others are ordered: [`super::fill`], [`super::order`].
 
-use faer::sparse::FaerError;
-use faer::{Mat, MatMut};
 use nalgebra::DMatrix;
+use stickslip_numerics::analysis::AnalysisError;
+use stickslip_numerics::blocks::MatMut;
 
 use super::assembly::Coupling;
 use super::error::MainSystemError;
@@ -79,9 +79,8 @@ impl Factor {
         };
         watch.progress(&format!("analysing {n} unknowns"), 0.0);
         let supernodes = ordered.supernodes().map_err(|error| match error {
-            // More entries than a 32-bit index counts.
-            FaerError::IndexOverflow => too_large(8 * (i32::MAX as u64)),
-            _ => out_of_memory(),
+            AnalysisError::TooLarge => too_large(8 * (i32::MAX as u64)),
+            AnalysisError::OutOfMemory => out_of_memory(),
         })?;
         let position = ordered.into_position();
         let matrix = with_joints(k_m, &position, &scale, c, joints);
@@ -142,17 +141,16 @@ impl Factor {
                 *x = state - 0.4;
             }
         }
-        let mut x = Mat::from_fn(n, 1, |i, _| start[i]);
+        let mut x = start;
         for _ in 0..4 {
-            self.supernodes.forward(x.as_mut());
-            self.supernodes.backward(x.as_mut());
-            let largest = (0..n).fold(0.0_f64, |m, i| m.max(x[(i, 0)].abs()));
+            self.solve_in_order(&mut x);
+            let largest = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             if !(largest > 0.0 && largest.is_finite()) {
                 break;
             }
-            (0..n).for_each(|i| x[(i, 0)] /= largest);
+            x.iter_mut().for_each(|x| *x /= largest);
         }
-        Some(self.position.iter().zip(&self.scale).map(|(&at, s)| x[(at as usize, 0)] * s).collect())
+        Some(self.position.iter().zip(&self.scale).map(|(&at, s)| x[at as usize] * s).collect())
     }
 
     /// D − Cᵀ K_m⁻¹ C, exactly symmetric.
@@ -162,16 +160,22 @@ impl Factor {
         d
     }
 
+    /// x := (L Lᵀ)⁻¹ x, in the order of elimination.
+    fn solve_in_order(&self, x: &mut [f64]) {
+        let n = x.len();
+        self.supernodes.forward(MatMut::from_column_major_slice_mut(x, n, 1));
+        self.supernodes.backward(MatMut::from_column_major_slice_mut(x, n, 1));
+    }
+
     /// K_m⁻¹ b, in place.
     pub fn solve(&self, b: &mut [f64]) {
-        let mut x = Mat::<f64>::zeros(self.order(), 1);
+        let mut x = vec![0.0; self.order()];
         for (i, b) in b.iter().enumerate() {
-            x[(self.position[i] as usize, 0)] = self.scale[i] * b;
+            x[self.position[i] as usize] = self.scale[i] * b;
         }
-        self.supernodes.forward(x.as_mut());
-        self.supernodes.backward(x.as_mut());
+        self.solve_in_order(&mut x);
         for (i, b) in b.iter_mut().enumerate() {
-            *b = self.scale[i] * x[(self.position[i] as usize, 0)];
+            *b = self.scale[i] * x[self.position[i] as usize];
         }
     }
 

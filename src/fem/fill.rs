@@ -5,14 +5,7 @@
 //! Among the rest each cut through the bodies reaches only the joints on its own stretch, and all of them carry rows of
 //! z. Counted for the matrix at hand.
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::sparse::linalg::cholesky::simplicial::{
-    EliminationTreeRef, prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
-};
-use faer::sparse::linalg::cholesky::supernodal::{
-    factorize_supernodal_symbolic_cholesky, factorize_supernodal_symbolic_cholesky_scratch,
-};
-use faer::sparse::{FaerError, SymbolicSparseColMatRef};
+use stickslip_numerics::analysis::{AnalysisError, UpperPattern};
 
 use super::assembly::Coupling;
 use super::error::MainSystemError;
@@ -66,10 +59,7 @@ pub struct Ordered {
     position: Vec<u32>,
     /// Multiplications of the elimination: the sum of the squared lengths of its columns of L.
     operations: f64,
-    /// Start of each column of the upper triangle.
-    start: Vec<u32>,
-    /// Its rows, in any order, some twice.
-    rows: Vec<u32>,
+    pattern: UpperPattern,
 }
 
 /// Where the analysis fails for want of memory.
@@ -115,11 +105,10 @@ impl Ordered {
             rows[*at as usize] = row;
             *at += 1;
         });
-        let mut ordered = Ordered { position, operations: 0.0, start, rows };
-        let operations = |counts: &[u32]| counts[..n].iter().map(|&count| f64::from(count).powi(2)).sum();
-        let counted = ordered.analysed(|_, counts, _| Ok(operations(counts)));
-        ordered.operations = counted.map_err(|_| out_of_memory())?;
-        Ok(ordered)
+        let pattern = UpperPattern { start, rows };
+        let counts = pattern.column_counts().map_err(|_| out_of_memory())?;
+        let operations = counts[..n].iter().map(|&count| f64::from(count).powi(2)).sum();
+        Ok(Ordered { position, operations, pattern })
     }
 
     fn cheaper(self, other: Ordered) -> Ordered {
@@ -131,38 +120,11 @@ impl Ordered {
         self.position
     }
 
-    fn pattern(&self) -> SymbolicSparseColMatRef<'_, u32> {
-        let order = self.start.len() - 1;
-        SymbolicSparseColMatRef::new_unsorted_checked(order, order, &self.start, None, &self.rows)
-    }
-
-    /// `work` with the elimination tree, the lengths of the columns of L and some room.
-    fn analysed<T>(
-        &self,
-        work: impl FnOnce(EliminationTreeRef<u32>, &[u32], &mut MemStack) -> Result<T, FaerError>,
-    ) -> Result<T, FaerError> {
-        let order = self.start.len() - 1;
-        let (mut tree, mut counts) = (vec![0_i32; order], vec![0_u32; order]);
-        let request = StackReq::or(
-            prefactorize_symbolic_cholesky_scratch::<u32>(order, self.rows.len()),
-            factorize_supernodal_symbolic_cholesky_scratch::<u32>(order),
-        );
-        let mut memory = MemBuffer::try_new(request).map_err(|_| FaerError::OutOfMemory)?;
-        let stack = MemStack::new(&mut memory);
-        let tree = prefactorize_symbolic_cholesky(&mut tree, &mut counts, self.pattern(), stack);
-        work(tree, &counts, stack)
-    }
-
     /// The supernodes of L.
     ///
     /// # Errors
-    /// More entries than a 32-bit index counts (`IndexOverflow`); out of memory.
-    pub fn supernodes(&self) -> Result<Supernodes, FaerError> {
-        let structure = self.analysed(|tree, counts, stack| {
-            factorize_supernodal_symbolic_cholesky(self.pattern(), tree, counts, stack, Default::default())
-        })?;
-        let mut begin = structure.supernode_begin().to_vec();
-        begin.push(self.start.len() as u32 - 1);
-        Ok(Supernodes::new(self.position.len(), begin, |s| structure.supernode(s).pattern()))
+    /// Too large; out of memory.
+    pub fn supernodes(&self) -> Result<Supernodes, AnalysisError> {
+        Ok(Supernodes::new(self.position.len(), self.pattern.supernodes()?))
     }
 }

@@ -5,12 +5,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::dense::{is_above, largest_eigenvalue, svd, symmetric_eigen};
 use super::error::{FreeDirection, MainSystemError};
 use super::loose::Motion;
 use crate::model::pair::Joint;
 use crate::model::structure::Structure;
 use crate::model::vector::length;
+use stickslip_numerics::decompositions::{is_above, largest_eigenvalue, svd, symmetric_eigen};
 
 /// Eigenvalues of R below this share of the largest are suspected of being zero.
 pub const ZERO_EIGENVALUE: f64 = 1e-10;

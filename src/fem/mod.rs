@@ -37,7 +37,6 @@ mod body_rows;
 mod classes;
 mod condense;
 mod contrast;
-mod dense;
 mod displacements;
 mod dof;
 mod elastic_curves;

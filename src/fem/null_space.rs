@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::dense::svd;
+use stickslip_numerics::decompositions::svd;
 
 /// Most columns of which a singular value decomposition is made: its time grows with their third power.
 pub const DENSE: usize = 240;

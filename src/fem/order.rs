@@ -7,9 +7,7 @@
 
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::amd;
+use stickslip_numerics::analysis::minimum_degree_order;
 
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
@@ -285,18 +283,7 @@ impl Dissection<'_> {
             rows.truncate(kept);
             start.push(rows.len() as u32);
         }
-        let n = members.len();
-        let (mut order, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);
-        let request = amd::order_scratch::<u32>(n, rows.len());
-        let mut memory = MemBuffer::try_new(request).map_err(|_| out_of_memory())?;
-        amd::order(
-            &mut order,
-            &mut inverse,
-            SymbolicSparseColMatRef::new_checked(n, n, &start, None, &rows),
-            amd::Control::default(),
-            MemStack::new(&mut memory),
-        )
-        .map_err(|_| out_of_memory())?;
+        let order = minimum_degree_order(&start, &rows).map_err(|_| out_of_memory())?;
         out.iter_mut().zip(order).for_each(|(out, i)| *out = members[i as usize]);
         Ok(())
     }

@@ -7,19 +7,15 @@
 //! ```
 //! Structure and solutions; the numbers of the factor are found in [`numeric`].
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
-use faer::{Accum, MatMut, MatRef, Par};
 use rayon::iter::IndexedParallelIterator;
+use stickslip_numerics::analysis::SupernodePatterns;
+use stickslip_numerics::blocks::{Accum, MatMut, MatRef, multiply, solve_lower, solve_upper};
 
 use super::error::MainSystemError;
 use super::threads::can_spread;
 use crate::watch::Watch;
 
 mod numeric;
-
-/// Each dense operation on one thread: results do not depend on the machine's number of cores.
-const PAR: Par = Par::Seq;
 
 /// Fewer entries than this are not worth a second thread to fill them with zeros.
 const LARGE: usize = 1 << 20;
@@ -123,16 +119,13 @@ pub struct Supernodes {
 
 impl Supernodes {
     /// Structure only: first columns of the supernodes (and the order at the end) and the pattern of each.
-    pub fn new<'a>(eliminated: usize, begin: Vec<u32>, pattern: impl Fn(usize) -> &'a [u32]) -> Supernodes {
-        let count = begin.len() - 1;
-        let (mut pattern_start, mut value_start) = (vec![0], vec![0]);
-        let mut rows = Vec::with_capacity((0..count).map(|s| pattern(s).len()).sum());
+    pub fn new(eliminated: usize, patterns: SupernodePatterns) -> Supernodes {
+        let SupernodePatterns { begin, pattern_start, rows } = patterns;
+        let mut value_start = vec![0];
         let mut values = 0;
-        for s in 0..count {
-            let width = (begin[s + 1] - begin[s]) as usize;
-            rows.extend_from_slice(pattern(s));
-            pattern_start.push(rows.len());
-            values += width * (width + pattern(s).len());
+        for (columns, pattern) in begin.windows(2).zip(pattern_start.windows(2)) {
+            let width = (columns[1] - columns[0]) as usize;
+            values += width * (width + pattern[1] - pattern[0]);
             value_start.push(values);
         }
         let shape = Shape { eliminated, begin, pattern_start, rows, value_start };
@@ -207,21 +200,14 @@ impl Supernodes {
             }
             let block = self.block(s);
             let mut x_top = x.as_mut().subrows_mut(self.shape.begin(s), active);
-            solve_lower_triangular_in_place(block.get(..active, ..active), x_top.as_mut(), PAR);
+            solve_lower(block.get(..active, ..active), x_top.as_mut());
             let rows = self.shape.below_until(s, limit);
             if rows == 0 {
                 continue;
             }
             buffer.resize(rows * columns, 0.0);
             let mut product = MatMut::from_column_major_slice_mut(&mut buffer, rows, columns);
-            matmul(
-                product.as_mut(),
-                Accum::Replace,
-                block.get(active..active + rows, ..active),
-                x_top.as_ref(),
-                1.0,
-                PAR,
-            );
+            multiply(product.as_mut(), Accum::Replace, block.get(active..active + rows, ..active), x_top.as_ref(), 1.0);
             for j in 0..columns {
                 for (i, row) in self.shape.below(s).take(rows).enumerate() {
                     x[(row, j)] -= product[(i, j)];
@@ -247,17 +233,16 @@ impl Supernodes {
             let below = MatRef::from_column_major_slice(&buffer, rows, columns);
             let mut x_top = x.as_mut().subrows_mut(self.shape.begin(s), active);
             if rows > 0 {
-                matmul(
+                multiply(
                     x_top.as_mut(),
                     Accum::Add,
                     block.get(active..active + rows, ..active).transpose(),
                     below,
                     -1.0,
-                    PAR,
                 );
             }
             let top = block.get(..active, ..active);
-            solve_upper_triangular_in_place(top.transpose(), x_top.as_mut(), PAR);
+            solve_upper(top.transpose(), x_top.as_mut());
         }
     }
 }

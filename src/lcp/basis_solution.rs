@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::lcp::basis::Basis;
-use crate::lcp::dense::Factor;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::variable::Variable;
+use stickslip_numerics::decompositions::Factor;
 
 /// Rows and columns of the whole LCP read from the mirrored one.
 struct Whole<'a> {

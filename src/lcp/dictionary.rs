@@ -8,11 +8,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::dense::Factor;
 use super::mirrored::MirroredLcp;
 use super::updated_matrix::UpdatedMatrix;
 use super::waiting_steps::Combination;
 use crate::lcp::basis::Basis;
+use stickslip_numerics::decompositions::Factor;
 
 /// A variable of the dictionary. `W(i)` and `Z(i)` of a mirrored row stand for the member of the couple that
 /// its orientation selects; the other w is known from [`Dictionary::hidden`], the other z is zero.

@@ -12,10 +12,10 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::dense::add_columns;
 use super::outcome::Point;
 use super::problem::{Lcp, Scale, as_good_as_nothing};
 use crate::doubled::Real;
+use stickslip_numerics::products::add_columns;
 
 /// The mirror of a primary row.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,7 +134,8 @@ impl MirroredLcp {
         let mut response = DVector::zeros(self.size());
         // Most pairs stick, and their displacements are zero.
         let columns = self.base.as_slice().chunks_exact(self.size().max(1)).zip(z.iter().copied());
-        add_columns(response.as_mut_slice(), columns.filter(|column| column.1 != 0.0));
+        let columns: Vec<_> = columns.filter(|column| column.1 != 0.0).collect();
+        add_columns(response.as_mut_slice(), &columns);
         self.couple(response.as_mut_slice());
         response
     }

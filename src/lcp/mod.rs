@@ -23,7 +23,6 @@
 pub mod basis;
 pub mod basis_solution;
 pub mod bimatrix;
-pub(crate) mod dense;
 mod dictionary;
 pub mod driver;
 pub mod exact;
@@ -39,5 +38,3 @@ pub mod ratio_test;
 mod updated_matrix;
 pub mod variable;
 mod waiting_steps;
-
-pub(crate) use dense::{compute_sequentially, smallest_eigenvalue, subtract_square};

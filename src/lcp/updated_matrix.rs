@@ -6,8 +6,8 @@
 
 use std::sync::Arc;
 
-use super::dense::add_columns;
 use super::waiting_steps::{Combination, WaitingSteps};
+use stickslip_numerics::products::add_columns;
 
 /// Columns that take batches over together: enough for products to run at full speed, and few enough to lie close to
 /// the one that was asked for. Measured from 8 to 64 at 1000 pairs.
@@ -124,7 +124,8 @@ impl UpdatedMatrix {
         for batch in oldest..=self.full.len() {
             // A column joins at the first batch that it has not taken over.
             let joining = || terms.iter().filter(|term| self.taken(term.0) == batch);
-            add_columns(&mut sum, joining().map(|&(j, factor)| (self.stored(j), factor)));
+            let columns: Vec<_> = joining().map(|&(j, factor)| (self.stored(j), factor)).collect();
+            add_columns(&mut sum, &columns);
             for &(j, factor) in joining() {
                 x[j] += factor;
             }

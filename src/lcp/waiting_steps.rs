@@ -6,7 +6,7 @@
 //! from the multipliers of the steps before it, a triangular recurrence as long as the number of waiting steps.
 //! No row of T is read until a column, or a block of columns, takes the steps over.
 
-use super::dense::{add_product, add_response, solve_unit_lower};
+use stickslip_numerics::products::{add_product, add_response, solve_unit_lower};
 
 /// A linear combination of rows of the matrix and of unit rows, what a step adds along its column u.
 #[derive(Clone, Debug, Default)]

@@ -121,7 +121,7 @@ pub fn prepare_at(scenario: &Scenario, values: &ParameterValues, watch: &dyn Wat
         }
     };
     let start = Instant::now();
-    crate::lcp::compute_sequentially();
+    stickslip_numerics::compute_sequentially();
     let mut prepared = match &scenario.source {
         Source::Structure(structure) => prepare_structure(scenario, structure, watch)?,
         Source::ContactSystem(given) => {

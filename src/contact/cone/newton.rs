@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::natural_map::{Branch, NaturalMap};
 use super::{ConeFailure, ConeProblem, across};
-use crate::lcp::dense::{Cholesky, Factor};
 use crate::watch::Watch;
+use stickslip_numerics::decompositions::{Cholesky, Factor};
 
 /// Steps at most.
 const STEPS: usize = 60;

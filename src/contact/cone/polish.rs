@@ -12,8 +12,8 @@ use super::natural_map::Branch;
 use super::{ConeProblem, Point, across, length};
 use crate::contact::sum::Sum;
 use crate::doubled::dot;
-use crate::lcp::dense::Factor;
 use crate::lcp::problem::NOISE;
+use stickslip_numerics::decompositions::Factor;
 
 /// Rounds at most.
 const ROUNDS: usize = 5;

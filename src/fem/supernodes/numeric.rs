@@ -9,17 +9,13 @@
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, MatMut, MatRef};
 use rayon::prelude::*;
+use stickslip_numerics::blocks::{Accum, BlockCholesky, MatMut, MatRef, multiply, solve_lower};
 
 use super::super::error::MainSystemError;
 use super::super::threads::can_spread;
 use super::super::watch::check_stop;
-use super::{PAR, Shape, Terms};
+use super::{Shape, Terms};
 use crate::watch::Watch;
 
 /// Columns of a supernode that are factorized at once, and of an update that is multiplied out at once: large
@@ -179,7 +175,7 @@ struct Scratch {
     local: Vec<u32>,
     updates: Vec<Update>,
     product: Product,
-    dense: MemBuffer,
+    dense: BlockCholesky,
 }
 
 /// Room for a product, and the multiplications since the last look at the watcher.
@@ -203,8 +199,7 @@ struct Work<'a> {
 
 impl Work<'_> {
     fn scratch(&self) -> Result<Scratch, MainSystemError> {
-        let request = cholesky_in_place_scratch::<f64>(PANEL, PAR, Default::default());
-        let dense = MemBuffer::try_new(request).map_err(|_| MainSystemError::OutOfMemory { doing: DOING })?;
+        let dense = BlockCholesky::new(PANEL).ok_or(MainSystemError::OutOfMemory { doing: DOING })?;
         let local = vec![0; self.shape.order()];
         Ok(Scratch { local, updates: Vec::new(), product: Product::default(), dense })
     }
@@ -359,13 +354,12 @@ impl Work<'_> {
                 let strip = (PIECE / (rows * active)).clamp(8, PANEL).min(to - at_row);
                 product.buffer.resize((rows * strip).max(product.buffer.len()), 0.0);
                 let buffer = &mut product.buffer[..rows * strip];
-                matmul(
+                multiply(
                     MatMut::from_column_major_slice_mut(buffer, rows, strip),
                     Accum::Replace,
                     below.get(at_row.., ..),
                     below.get(at_row..at_row + strip, ..).transpose(),
                     1.0,
-                    PAR,
                 );
                 for (j, column) in buffer.chunks_exact(rows).enumerate() {
                     let own = target.local[pattern[at_row + j] as usize] as usize - at;
@@ -401,11 +395,9 @@ impl Work<'_> {
             let (panel, rest) = values.split_at_mut(below * height);
             let panel = MatMut::from_column_major_slice_mut(&mut panel[at * height..], height, size);
             let (mut top, mut bottom) = panel.get_mut(at.., ..).split_at_row_mut(size);
-            let memory = MemStack::new(&mut scratch.dense);
-            cholesky_in_place(top.as_mut(), Default::default(), PAR, memory, Default::default())
-                .map_err(|_| Halt::Pivot)?;
+            scratch.dense.factorize(top.as_mut()).map_err(|_| Halt::Pivot)?;
             let top = top.as_ref();
-            let solve = |rows: MatMut<f64>| solve_lower_triangular_in_place(top, rows.transpose_mut(), PAR);
+            let solve = |rows: MatMut<f64>| solve_lower(top, rows.transpose_mut());
             let rows = if in_strips { ROWS } else { bottom.nrows() };
             if in_strips && self.is_spread && bottom.nrows() > rows {
                 bottom.as_mut().par_row_chunks_mut(rows).for_each(solve);
@@ -423,13 +415,12 @@ impl Work<'_> {
             let strip = (PIECE / (bottom.nrows().max(1) * size)).clamp(8, PANEL);
             self.each_strip(rest, strip * height, in_strips, &mut scratch.product, |product, (index, columns)| {
                 let (first, width) = (index * strip, columns.len() / height);
-                matmul(
+                multiply(
                     MatMut::from_column_major_slice_mut(columns, height, width).get_mut(below + first.., ..),
                     Accum::Add,
                     bottom.get(first.., ..),
                     bottom.get(first..first + width, ..).transpose(),
                     -1.0,
-                    PAR,
                 );
                 Ok(self.look(&mut product.since, (bottom.nrows() - first) * width * size)?)
             })?;

@@ -1,10 +1,10 @@
 //! The answer after a change of friction, from the dictionary of the old one.
 
-use super::super::dense::add_response;
 use super::super::dictionary::{Place, Slot};
 use super::super::outcome::Point;
 use super::super::variable::Variable;
 use super::Parametric;
+use stickslip_numerics::products::add_response;
 
 /// A scheme holds at another friction while nothing falls below −this multiple of the largest of its kind.
 const HOLDS: f64 = 1e-12;

@@ -2,9 +2,9 @@
 
 use super::{Candidate, PivotState, SUSPICIOUS};
 use crate::doubled::{Doubled, Real};
-use crate::lcp::dense::add_doubled_response;
 use crate::lcp::dictionary::{Place, Slot};
 use crate::lcp::outcome::Point;
+use stickslip_numerics::products::add_doubled_response;
 
 /// Relative error of the dictionary against the data above which it is built afresh.
 const DRIFT: f64 = 1e-10;

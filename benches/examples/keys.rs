@@ -10,10 +10,6 @@
 //! held down until the new states are on the screen; displacements, the check of equilibrium and the pivots follow when
 //! it rests.
 
-#[path = "../benches/common/mod.rs"]
-#[allow(dead_code)]
-mod common;
-
 use std::cell::Cell;
 use std::collections::VecDeque;
 use std::io::{self, Write};
@@ -27,7 +23,7 @@ use ratatui::backend::CrosstermBackend;
 use ratatui::layout::Rect;
 use ratatui::{Terminal, TerminalOptions, Viewport};
 
-use common::Plates;
+use plates::Plates;
 use stickslip::session::Session;
 use stickslip::tui::action::{Action, Effect, Job, Leave};
 use stickslip::tui::app::State;

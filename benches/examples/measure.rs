@@ -15,9 +15,6 @@
 //! measure exact PAIRS F                                   the exact check of an answer
 //! ```
 
-#[path = "../benches/common/mod.rs"]
-mod common;
-
 use std::fs::File;
 use std::io::{BufRead, BufWriter, Write};
 use std::ops::ControlFlow;
@@ -30,7 +27,7 @@ use faer::Side;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use serde_json::{Value, json};
 
-use common::{Plates, Pull, Ready, brick_block};
+use plates::{Plates, Pull, Ready, brick_block};
 use stickslip::answer::same::same_answer;
 use stickslip::contact::full_lcp::full_lcp;
 use stickslip::contact::lcp::contact_lcp;
@@ -487,7 +484,7 @@ fn main() -> ExitCode {
         Some("exact") => exact(rest).map(|result| println!("{result}")),
         _ => {
             let known = "engine, warm, resolve, trace, sweep, condense, schur, space, given or exact";
-            Err(format!("expected {known}; see the head of examples/measure.rs").into())
+            Err(format!("expected {known}; see the head of benches/examples/measure.rs").into())
         }
     };
     match done {

@@ -1,0 +1,121 @@
+//! Products of dense matrices, column-major.
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
+use faer::{Accum, MatMut, MatRef, Par};
+
+/// Columns of a triangle that are multiplied out at once.
+const STRIP: usize = 128;
+
+/// target += left · right; all column-major: rows × columns, rows × k, k × columns.
+pub fn add_product(target: &mut [f64], left: &[f64], right: &[f64], rows: usize, columns: usize, k: usize) {
+    if rows == 0 || columns == 0 || k == 0 {
+        return;
+    }
+    matmul(
+        MatMut::from_column_major_slice_mut(target, rows, columns),
+        Accum::Add,
+        MatRef::from_column_major_slice(left, rows, k),
+        MatRef::from_column_major_slice(right, k, columns),
+        1.0,
+        Par::Seq,
+    );
+}
+
+/// Lower triangle of the trailing square −= P Pᵀ: `columns` are the last columns of an n × n matrix, from number `from`
+/// on, `panel` some columns before them; P is the rows of `panel` from `from` on. What is above the diagonal is left
+/// undefined.
+pub fn subtract_square(columns: &mut [f64], panel: &[f64], n: usize, from: usize) {
+    if columns.is_empty() || panel.is_empty() {
+        return;
+    }
+    let panel = MatRef::from_column_major_slice(panel, n, panel.len() / n);
+    for (index, strip) in columns.chunks_mut(STRIP * n).enumerate() {
+        let (first, width) = (from + index * STRIP, strip.len() / n);
+        matmul(
+            MatMut::from_column_major_slice_mut(strip, n, width).get_mut(first.., ..),
+            Accum::Add,
+            panel.get(first.., ..),
+            panel.get(first..first + width, ..).transpose(),
+            -1.0,
+            Par::Seq,
+        );
+    }
+}
+
+/// target += matrix · x; the matrix column-major, as many columns as x has entries.
+pub fn add_response(target: &mut [f64], matrix: &[f64], x: &[f64]) {
+    let rows = target.len();
+    add_product(target, matrix, x, rows, 1, x.len());
+}
+
+/// target += Σ factor · column over the given (column, factor).
+pub fn add_columns(target: &mut [f64], terms: &[(&[f64], f64)]) {
+    // Four columns at a time: the sum is read and written a quarter as often.
+    let mut fours = terms.chunks_exact(4);
+    for four in &mut fours {
+        let [a, b, c, d] = [four[0], four[1], four[2], four[3]];
+        let columns = a.0.iter().zip(b.0).zip(c.0.iter().zip(d.0));
+        for (sum, ((w, x), (y, z))) in target.iter_mut().zip(columns) {
+            *sum += (a.1 * w + b.1 * x) + (c.1 * y + d.1 * z);
+        }
+    }
+    for &(column, factor) in fours.remainder() {
+        for (sum, entry) in target.iter_mut().zip(column) {
+            *sum += factor * entry;
+        }
+    }
+}
+
+/// high + low += matrix · x, the rounding errors of every product and sum carried along in `low` (Ogita, Rump, Oishi
+/// 2005), column by column as the matrix is stored.
+pub fn add_doubled_response(high: &mut [f64], low: &mut [f64], matrix: &[f64], x: &[f64]) {
+    let columns = matrix.chunks_exact(high.len().max(1)).zip(x).filter(|(_, x)| **x != 0.0);
+    for (column, x) in columns {
+        let factor = Split::new(*x);
+        for ((high, low), entry) in high.iter_mut().zip(low.iter_mut()).zip(column) {
+            let (product, product_error) = Split::new(*entry).times(&factor);
+            let next = *high + product;
+            let back = next - *high;
+            *low += (*high - (next - back)) + (product - back) + product_error;
+            *high = next;
+        }
+    }
+}
+
+/// right := lower⁻¹ right, where `lower` (size × size, column-major) has ones on its diagonal.
+pub fn solve_unit_lower(lower: &[f64], right: &mut [f64], size: usize, columns: usize) {
+    if size == 0 || columns == 0 {
+        return;
+    }
+    solve_unit_lower_triangular_in_place(
+        MatRef::from_column_major_slice(lower, size, size),
+        MatMut::from_column_major_slice_mut(right, size, columns),
+        Par::Seq,
+    );
+}
+
+/// A number cut into two halves of 26 bits (Veltkamp), so that products of halves are exact.
+struct Split {
+    value: f64,
+    high: f64,
+    low: f64,
+}
+
+impl Split {
+    #[inline]
+    fn new(value: f64) -> Split {
+        let carried = 134_217_729.0 * value;
+        let high = carried - (carried - value);
+        Split { value, high, low: value - high }
+    }
+
+    /// Product and its rounding error (Dekker).
+    #[inline]
+    fn times(&self, other: &Split) -> (f64, f64) {
+        let product = self.value * other.value;
+        let error =
+            ((self.high * other.high - product) + self.high * other.low + self.low * other.high) + self.low * other.low;
+        (product, error)
+    }
+}
