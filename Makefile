@@ -16,10 +16,10 @@ name := stickslip-$(version)-$(TARGET)
 .PHONY: release crate static deb wheel share checksums
 release: crate static deb wheel checksums
 
-# The crate as `cargo publish` would send it, compiled from what is in it.
+# The crates as `cargo publish` would send them, compiled from what is in them.
 crate:
-	cargo package --locked
-	install -D -m 644 $(built)/package/stickslip-$(version).crate -t $(packages)
+	cargo package --locked -p stickslip-numerics -p stickslip
+	install -D -m 644 $(built)/package/stickslip-$(version).crate $(built)/package/stickslip-numerics-$(version).crate -t $(packages)
 
 # One file that runs on any Linux of this processor, with manual, completions and examples beside it.
 static:

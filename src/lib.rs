@@ -58,4 +58,5 @@ pub mod solve;
 pub mod text;
 pub mod tui;
 pub mod view;
-pub mod watch;
+
+pub use stickslip_numerics::watch;

@@ -7,19 +7,20 @@
 //!     Cᵀ K_m⁻¹ C = L_C L_Cᵀ
 //! ```
 //!
-//! z is carried along as further rows that are not eliminated ([`super::supernodes`]), so the sparsity of C is used
+//! z is carried along as further rows that are not eliminated ([`stickslip_numerics::supernodes`]), so the sparsity of C is used
 //! to the end. How the others are ordered: [`super::fill`], [`super::order`].
 
 use nalgebra::DMatrix;
 use stickslip_numerics::analysis::AnalysisError;
 use stickslip_numerics::blocks::MatMut;
+use stickslip_numerics::supernodes::{FactorError, Supernodes, Terms};
 
 use super::assembly::Coupling;
 use super::error::MainSystemError;
 use super::fill::{best_order, out_of_memory};
 use super::order::Places;
 use super::sparse::SymmetricSparse;
-use super::supernodes::{Supernodes, Terms};
+use super::threads::can_spread;
 use super::watch::check_stop;
 use crate::model::memory::available_memory;
 use crate::watch::Watch;
@@ -90,7 +91,11 @@ impl Factor {
             return Err(too_large(needed));
         }
         check_stop(watch)?;
-        while !factor.supernodes.factorize(&matrix, factor.shift, watch)? {
+        let failed = |error| match error {
+            FactorError::OutOfMemory => MainSystemError::OutOfMemory { doing: "factorizing the main system" },
+            FactorError::Interrupted => MainSystemError::Interrupted,
+        };
+        while !factor.supernodes.factorize(&matrix, factor.shift, can_spread, watch).map_err(failed)? {
             check_stop(watch)?;
             factor.shift = if factor.shift == 0.0 { FIRST_SHIFT } else { factor.shift * SHIFT_STEP };
             if factor.shift > 1.0 {

@@ -6,12 +6,12 @@
 //! z. Counted for the matrix at hand.
 
 use stickslip_numerics::analysis::{AnalysisError, UpperPattern};
+use stickslip_numerics::supernodes::Supernodes;
 
 use super::assembly::Coupling;
 use super::error::MainSystemError;
 use super::order::{Places, elimination_order};
 use super::sparse::SymmetricSparse;
-use super::supernodes::Supernodes;
 use crate::watch::Watch;
 
 /// The cheaper order.

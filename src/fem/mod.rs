@@ -25,7 +25,7 @@
 //! The joints reach this module as rows of B ([`crate::model::pair::Joint`]); it knows no contact law.
 //!
 //! Order of reading: `dof`, `elimination` (u = T v + G z), `element`, `assembly` (K, F, and K_m = TᵀKT, C, D), `factor`
-//! (sparse Cholesky with the joints, by `supernodes`), `loose` (rigid motions of parts), [`main_system`] and `condense`
+//! (sparse Cholesky with the joints), `loose` (rigid motions of parts), [`main_system`] and `condense`
 //! (R, RF, Z), `expand` (displacements), [`recovery`] (member forces, stresses, reactions).
 
 pub mod main_system;
@@ -63,7 +63,6 @@ mod refinement;
 mod repeated;
 mod sparse;
 mod superelement;
-mod supernodes;
 mod threads;
 mod watch;
 

@@ -1,8 +1,9 @@
 //! Scripts: their status, what they say where they fail, scripts within scripts, and those that come along.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
 use stickslip::session::{Format, Output, script};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
@@ -72,18 +73,16 @@ fn json_lines_are_one_object_per_command() {
 #[test]
 fn the_scripts_that_come_along_hold_and_repeat_to_the_byte() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/scripts");
-    let mut count = 0;
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let text = fs::read_to_string(&path).unwrap();
+    let paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert!(paths.len() >= 4);
+    paths.par_iter().for_each(|path| {
+        let text = fs::read_to_string(path).unwrap();
         for format in [Format::Text, Format::JsonLines] {
             let (first, failures, status) = replay(&text, format, false);
             assert_eq!((status, &failures), (0, &Vec::new()), "{}", path.display());
             assert_eq!(replay(&text, format, false).0, first, "{}", path.display());
         }
-        count += 1;
-    }
-    assert!(count >= 4);
+    });
 }
 
 #[test]

@@ -7,15 +7,24 @@
 //! ```
 //! Structure and solutions; the numbers of the factor are found in [`numeric`].
 
+use crate::analysis::SupernodePatterns;
+use crate::blocks::{Accum, MatMut, MatRef, multiply, solve_lower, solve_upper};
 use rayon::iter::IndexedParallelIterator;
-use stickslip_numerics::analysis::SupernodePatterns;
-use stickslip_numerics::blocks::{Accum, MatMut, MatRef, multiply, solve_lower, solve_upper};
 
-use super::error::MainSystemError;
-use super::threads::can_spread;
 use crate::watch::Watch;
 
 mod numeric;
+
+const DOING: &str = "factorizing the main system";
+
+/// Why there is no factor.
+#[derive(Debug)]
+pub enum FactorError {
+    /// Memory is short.
+    OutOfMemory,
+    /// The watcher said to stop.
+    Interrupted,
+}
 
 /// Fewer entries than this are not worth a second thread to fill them with zeros.
 const LARGE: usize = 1 << 20;
@@ -143,21 +152,27 @@ impl Supernodes {
     }
 
     /// Factorizes A + `shift`·1 on the eliminated columns; `matrix` is in the order of the supernodes. False if a
-    /// pivot was not positive.
+    /// pivot was not positive. Large ones are spread over threads if `can_spread` says so.
     ///
     /// # Errors
     /// Out of memory; interrupted.
-    pub fn factorize(&mut self, matrix: &Terms, shift: f64, watch: &dyn Watch) -> Result<bool, MainSystemError> {
+    pub fn factorize(
+        &mut self,
+        matrix: &Terms,
+        shift: f64,
+        can_spread: fn() -> bool,
+        watch: &dyn Watch,
+    ) -> Result<bool, FactorError> {
         let length = self.stored();
         self.values.clear();
-        self.values.try_reserve_exact(length).map_err(|_| MainSystemError::OutOfMemory { doing: numeric::DOING })?;
+        self.values.try_reserve_exact(length).map_err(|_| FactorError::OutOfMemory)?;
         if length > LARGE && can_spread() {
             // The first touch of so many pages takes its time.
             rayon::iter::repeat_n(0.0, length).collect_into_vec(&mut self.values);
         } else {
             self.values.resize(length, 0.0);
         }
-        numeric::factorize(&self.shape, &mut self.values, matrix, shift, watch)
+        numeric::factorize(&self.shape, &mut self.values, matrix, shift, can_spread, watch)
     }
 
     /// Position and size of the smallest squared pivot of L_A.

@@ -9,13 +9,10 @@
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
+use crate::blocks::{Accum, BlockCholesky, MatMut, MatRef, multiply, solve_lower};
 use rayon::prelude::*;
-use stickslip_numerics::blocks::{Accum, BlockCholesky, MatMut, MatRef, multiply, solve_lower};
 
-use super::super::error::MainSystemError;
-use super::super::threads::can_spread;
-use super::super::watch::check_stop;
-use super::{Shape, Terms};
+use super::{DOING, FactorError, Shape, Terms};
 use crate::watch::Watch;
 
 /// Columns of a supernode that are factorized at once, and of an update that is multiplied out at once: large
@@ -32,18 +29,22 @@ const BRANCHES: f64 = 64.0;
 /// Multiplications that are not worth a second thread.
 const SMALL: f64 = 1e7;
 
-pub(super) const DOING: &str = "factorizing the main system";
 const NONE: u32 = u32::MAX;
+
+/// Interrupted, if the watcher says so.
+fn check_stop(watch: &dyn Watch) -> Result<(), FactorError> {
+    if watch.stop() { Err(FactorError::Interrupted) } else { Ok(()) }
+}
 
 /// Why a factorization ends early.
 enum Halt {
     /// A pivot is not positive.
     Pivot,
-    Error(MainSystemError),
+    Error(FactorError),
 }
 
-impl From<MainSystemError> for Halt {
-    fn from(error: MainSystemError) -> Halt {
+impl From<FactorError> for Halt {
+    fn from(error: FactorError) -> Halt {
         Halt::Error(error)
     }
 }
@@ -57,8 +58,9 @@ pub(super) fn factorize(
     values: &mut [f64],
     matrix: &Terms,
     shift: f64,
+    can_spread: fn() -> bool,
     watch: &dyn Watch,
-) -> Result<bool, MainSystemError> {
+) -> Result<bool, FactorError> {
     let count = shape.count();
     let mut owner = vec![0_u32; shape.order()];
     for s in 0..count {
@@ -130,7 +132,7 @@ struct Progress<'a> {
 }
 
 impl Progress<'_> {
-    fn add(&self, cost: f64, columns: usize, all: usize) -> Result<(), MainSystemError> {
+    fn add(&self, cost: f64, columns: usize, all: usize) -> Result<(), FactorError> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         state.0 += cost;
         state.1 += columns;
@@ -198,8 +200,8 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    fn scratch(&self) -> Result<Scratch, MainSystemError> {
-        let dense = BlockCholesky::new(PANEL).ok_or(MainSystemError::OutOfMemory { doing: DOING })?;
+    fn scratch(&self) -> Result<Scratch, FactorError> {
+        let dense = BlockCholesky::new(PANEL).ok_or(FactorError::OutOfMemory)?;
         let local = vec![0; self.shape.order()];
         Ok(Scratch { local, updates: Vec::new(), product: Product::default(), dense })
     }
@@ -376,7 +378,7 @@ impl Work<'_> {
     }
 
     /// Counts `multiplications` more and asks the watcher when a [`PIECE`] is full.
-    fn look(&self, since: &mut usize, multiplications: usize) -> Result<(), MainSystemError> {
+    fn look(&self, since: &mut usize, multiplications: usize) -> Result<(), FactorError> {
         *since += multiplications;
         if *since <= PIECE {
             return Ok(());
