@@ -1,6 +1,8 @@
 //! Blocks in space against their closed forms: limits of sliding, twisting and overturning, and blocks that walls confine.
 
 use nalgebra::{DMatrix, Vector3};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::contact::law::PairLaw;
@@ -68,6 +70,43 @@ fn a_block_slides_at_the_same_force_in_every_direction() {
             assert!(pushed(1.0 + excess), "{degrees} degrees, 1 + {excess:e}");
             assert!(!pushed(1.0 - excess), "{degrees} degrees, 1 - {excess:e}");
         }
+    }
+}
+
+/// A limit is told at (1 ± 1e-8) of it at every angle, for whatever friction, not only where the push suits the program.
+#[test]
+fn a_limit_is_as_sharp_at_every_angle() {
+    let mut random = ChaCha8Rng::seed_from_u64(31);
+    let check = |name: &str, f: f64, at: &dyn Fn(f64) -> bool| {
+        assert!(!at(1.0 - 1e-8), "{name}, f = {f}: certified below its limit");
+        assert!(at(1.0 + 1e-8), "{name}, f = {f}: not certified beyond it");
+    };
+    for _ in 0..100 {
+        let f = random.random_range(0.1..2.0);
+        let weight = random.random_range(0.5..20.0);
+        let angle = random.random_range(0.0..std::f64::consts::TAU);
+        let (sin, cos) = f64::sin_cos(angle);
+        // Pushed at the ground: f W.
+        let slides = |share: f64| {
+            let push = share * f * weight;
+            certified(&square(f), [push * cos, push * sin, -weight], [0.0; 3])
+        };
+        check(&format!("pushed at {angle}"), f, &slides);
+        // Pushed at the height 1 over the edge that the angle looks at: P max(|cos|, |sin|) = W/2.
+        let overturns = |share: f64| {
+            let push = share * weight * 0.5 / cos.abs().max(sin.abs());
+            certified(&square(4.0), [push * cos, push * sin, -weight], [-push * sin, push * cos, 0.0])
+        };
+        check(&format!("over an edge at {angle}"), 4.0, &overturns);
+        // Turned about the middle of three supports at 120°, a third of the weight on each: f W r.
+        let radius = random.random_range(0.1..3.0);
+        let support = |i: u8| {
+            let (sin, cos) = (angle + f64::from(i) * std::f64::consts::TAU / 3.0).sin_cos();
+            ([radius * cos, radius * sin, 0.0], [0.0, 0.0, 1.0], PairLaw::rubbing(f, 0.0, 0.0))
+        };
+        let supports: Vec<Touch> = (0..3).map(support).collect();
+        let twists = |share: f64| certified(&supports, [0.0, 0.0, -weight], [0.0, 0.0, share * f * weight * radius]);
+        check(&format!("twisted from {angle} at {radius}"), f, &twists);
     }
 }
 

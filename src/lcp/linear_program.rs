@@ -29,6 +29,42 @@ impl Row {
     }
 }
 
+/// The rows of a cone with other bounds.
+fn moved(cone: &[Row], bounds: &[f64]) -> Vec<Row> {
+    cone.iter().zip(bounds).map(|(row, bound)| Row { terms: row.terms.clone(), bound: *bound }).collect()
+}
+
+/// A cone around a point far from its apex, `rests` there and the `length` of all but the first of them. The first row t
+/// against the vector v, of which u lies along its `rests` and w across:
+///
+/// ```text
+///   t ≥ |v|   ⇔   (t − u)(t + u) ≥ |w|²,   t + u ≥ 0
+/// ```
+/// t − u is small and t + u nearly 2 `length`: over the root of that and times it both are of one size, so that the
+/// tolerance of the crate counts by what is left of the cone, not by how far it is from its apex.
+fn from_its_side(cone: &[Row], rests: &[f64], length: f64) -> Vec<Row> {
+    let share: Vec<f64> = rests[1..].iter().map(|rest| rest / length).collect();
+    // Σ factor · row; its bound is given, where terms of it cancel.
+    let sum = |factors: &[f64], bound: f64| {
+        let rows = cone.iter().zip(factors).filter(|(_, factor)| **factor != 0.0);
+        Row { terms: rows.flat_map(|(row, f)| row.terms.iter().map(move |(k, a)| (*k, f * a))).collect(), bound }
+    };
+    let root = (2.0 * length).sqrt();
+    let (small, large) = (0.5 * root * (rests[0] - length), 0.5 * (rests[0] + length) / root);
+    let of = |sign: f64| -> Vec<f64> {
+        let [own, along] = [1.0, -1.0].map(|side| 0.5 * (root + sign * side / root));
+        std::iter::once(own).chain(share.iter().map(|share| -along * share)).collect()
+    };
+    let mut rows = vec![sum(&of(1.0), small + large), sum(&of(-1.0), small - large)];
+    for part in 0..share.len() {
+        let mut factors: Vec<f64> = share.iter().map(|other| -other * share[part]).collect();
+        factors[part] += 1.0;
+        factors.insert(0, 0.0);
+        rows.push(sum(&factors, 0.0));
+    }
+    rows
+}
+
 /// min cost·x over rows `a·x ≤ b` and `a·x = b`, and cones, x free.
 #[derive(Clone, Debug, Default)]
 pub struct LinearProgram {
@@ -172,24 +208,14 @@ impl LinearProgram {
                 near.at_most(row.terms.clone(), bound);
             }
         }
-        for cone in self.cones.iter() {
+        for cone in &self.cones {
             let rests: Vec<f64> = cone.iter().map(rest).collect();
             let length = rests[1..].iter().map(|part| part * part).sum::<f64>().sqrt();
             let far = cone[1..].iter().map(reach).sum::<f64>();
             if rests[0] - length >= reach(&cone[0]) + far {
                 continue;
             }
-            if length <= far {
-                let row = |(row, bound): (&Row, &f64)| Row { terms: row.terms.clone(), bound: *bound };
-                near.cones.push(cone.iter().zip(&rests).map(row).collect());
-                continue;
-            }
-            // So far out the cone is as flat as its tangent plane: first row ≥ length + Σ (part/length) · change.
-            let mut tangent = cone[0].terms.clone();
-            for (row, part) in cone[1..].iter().zip(&rests[1..]) {
-                tangent.extend(row.terms.iter().map(|(k, a)| (*k, -a * part / length)));
-            }
-            near.at_most(tangent, rests[0] - length);
+            near.cones.push(if length > far { from_its_side(cone, &rests, length) } else { moved(cone, &rests) });
         }
         for k in 0..self.cost.len() {
             near.at_most(vec![(k, 1.0)], RANGE);

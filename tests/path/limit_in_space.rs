@@ -1,7 +1,11 @@
 //! Limits in space against their closed forms, on Coulomb's cone at every fineness of the polygon.
 
+use std::f64::consts::TAU;
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
-use stickslip::answer::record::Verdict;
+use stickslip::answer::record::{Answer, Verdict};
 use stickslip::path::limit::{Limit, limit};
 
 use crate::common::Case;
@@ -67,4 +71,99 @@ fn what_stands_without_friction_has_no_limit() {
     let limit = found(&Case::json(case), "F");
     assert!(limit.factor.is_none() && limit.bracket.is_none() && limit.last > 1e8, "{}", limit.end_sentence());
     assert!(limit.end_sentence().contains("no collapse was found"), "{}", limit.end_sentence());
+}
+
+/// Below its limit a load has an answer that passed its check on the cone, beyond it a collapse that is certified.
+fn sharp(case: &Case, limit: f64, what: &str) {
+    let at = |share: f64| -> Answer { case.solve(&[("P", share * limit)]) };
+    let below = at(1.0 - 1e-6);
+    let on_cone = below.polygon.is_some_and(|polygon| polygon.cone);
+    assert!(below.is_answer() && below.check.passed && on_cone, "{what}, below: {:?}", below.outcome);
+    let beyond = at(1.0 + 1e-5).ray.unwrap_or_else(|| panic!("{what}: an answer beyond"));
+    assert_eq!(beyond.verdict, Some(Verdict::Certified), "{what}, beyond");
+}
+
+/// A block of bricks of weight W is pushed by P at an angle: at its base it slides at P = f W, at the height h of its top it
+/// overturns over the edge that it comes to first, at P = W/(2 h) · min(a/|cos|, b/|sin|). Near to sliding all of it has slipped far,
+/// each foot almost the same way.
+#[test]
+fn a_block_of_bricks_is_sharp_at_its_limit_at_every_angle() {
+    let sharp_block = |size: [f64; 3], divisions: [u32; 3], angle: f64, friction: f64| {
+        let [a, b, h] = size;
+        let (sin, cos) = angle.sin_cos();
+        let weight = 25.0 * a * b * h;
+        let block = |friction: f64, face: &str| {
+            Case::json(json!({
+                "dimension": 3,
+                "parameters": { "P": 1 },
+                "materials": { "m": { "E": 3e7, "nu": 0.2, "density": 25 } },
+                "bricks": [{ "id": "b", "origin": [0, 0, 0], "size": size, "divisions": divisions, "material": "m" }],
+                "contacts": [{ "id": "g", "face": "b.bottom", "against": "ground", "friction": friction }],
+                "loads": {
+                    "w": { "items": [{ "gravity": { "acceleration": [0, 0, -1] } }] },
+                    "p": { "factor": "P", "items": [{ "point": { "at": format!("b.{face}"), "force": [cos, sin, 0] } }] }
+                }
+            }))
+        };
+        let what = format!("{size:?} at {angle}, f = {friction}");
+        sharp(&block(friction, "bottom"), friction * weight, &what);
+        let overturns = 0.5 * weight / h * (a / cos.abs()).min(b / sin.abs());
+        sharp(&block(2.0 * overturns / weight + 1.0, "top"), overturns, &what);
+    };
+    // Where friction couples with the pressure most, the search for the answer has the longest way.
+    for (size, divisions, angle, friction) in
+        [([1.852, 0.546, 0.271], [1, 2, 1], 1.6734, 1.623), ([0.85, 0.785, 0.218], [2, 1, 2], 5.8393, 1.834)]
+    {
+        sharp_block(size, divisions, angle, friction);
+    }
+    let mut random = ChaCha8Rng::seed_from_u64(41);
+    for _ in 0..12 {
+        let size = [0.5, 0.5, 0.2].map(|least| random.random_range(least..2.0));
+        let divisions = [(); 3].map(|()| random.random_range(1..3));
+        sharp_block(size, divisions, random.random_range(0.0..TAU), random.random_range(0.1..2.0));
+    }
+}
+
+/// Feet of a rigid body at 200 angles.
+#[test]
+fn feet_are_sharp_at_their_limit_at_every_angle() {
+    let mut random = ChaCha8Rng::seed_from_u64(43);
+    for _ in 0..200 {
+        let (angle, friction) = (random.random_range(0.0..360.0), random.random_range(0.1..2.0));
+        let weight = random.random_range(0.5..20.0);
+        let facets = 2 * random.random_range(2..9);
+        let case = feet(&[angle], weight, friction, facets);
+        let at = |share: f64| case.solve(&[("F", share * friction * weight)]);
+        assert!(at(1.0 - 1e-6).is_answer(), "{angle} {friction}");
+        let beyond = at(1.0 + 1e-5).ray.unwrap_or_else(|| panic!("{angle} {friction}: an answer beyond"));
+        assert_eq!(beyond.verdict, Some(Verdict::Certified), "{angle} {friction}");
+    }
+}
+
+/// Pressed by W = 2 against a spring along the normal and free to slide, a foot slips away beyond f W in every direction. What
+/// slips parts no pair, and by statics alone the spring might press it by any force; but no slip is felt along the normal. That is
+/// said of this load: another may press harder.
+#[test]
+fn what_a_spring_presses_slides_away_at_the_friction_of_its_load() {
+    let case: Value = json!({ "parameters": { "F": 0.1 }, "contact_system": {
+        "pairs": ["c1"], "tangents": 2, "stiffness": [[3, 0, 0], [0, 0, 0], [0, 0, 0]], "friction": [0.5],
+        "loads": { "weight": { "vector": [2, 0, 0] }, "push": { "factor": "F", "vector": [0, -0.6, -0.8] } } } });
+    let case = Case::json(case);
+    let limit = found(&case, "F");
+    assert!((limit.factor.expect("a limit") - 1.0).abs() <= 1e-8 && limit.confirmed, "{}", limit.end_sentence());
+    let beyond = case.solve(&[("F", 1.0 + 1e-5)]).ray.expect("a collapse");
+    assert_eq!(beyond.verdict, Some(Verdict::Certified));
+    assert!(beyond.explanation.contains("no slip is felt along the normals"), "{}", beyond.explanation);
+    assert!(limit.beyond_sentence().is_some_and(|words| words.contains("not proved")), "{:?}", limit.beyond_sentence());
+}
+
+/// Where slips press the pair, nothing is known of its force beforehand, and nothing is claimed: R has z_t2 in its kernel, and
+/// along t1 it couples with the normal.
+#[test]
+fn what_slips_press_is_not_certified_by_the_load() {
+    let case: Value = json!({ "parameters": { "F": 2.0 }, "contact_system": {
+        "pairs": ["c1"], "tangents": 2, "stiffness": [[1, 0.5, 0], [0.5, 1, 0], [0, 0, 0]], "friction": [0.5],
+        "loads": { "weight": { "vector": [2, 0, 0] }, "push": { "factor": "F", "vector": [0, 0, -1] } } } });
+    let ray = Case::json(case).solve(&[]).ray.expect("no answer");
+    assert_eq!(ray.verdict, Some(Verdict::Undecided));
 }

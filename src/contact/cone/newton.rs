@@ -1,4 +1,8 @@
 //! Newton's method on the natural map, with halved steps: its semi-smooth derivative on the joints that move.
+//!
+//! The map need not fall in every step, only below the largest of its last values (Grippo, Lampariello & Lucidi 1986). Near a
+//! limit of sliding the answer lies far off, along a motion that costs no energy, at the end of a bent valley: a search that
+//! only ever goes down creeps along its floor, one that may climb its side crosses it in some ten steps.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,11 +13,13 @@ use stickslip_numerics::decompositions::{Cholesky, Factor};
 
 /// Steps at most.
 const STEPS: usize = 60;
-/// The natural map has to halve within this many steps: a search that creeps does not arrive.
+/// The least value of the natural map has to halve within this many steps: a search that creeps does not arrive.
 const PATIENCE: usize = 12;
 /// A step is halved at most this often.
 const HALVINGS: usize = 12;
-/// The natural map has to fall by at least this share of what a step promises (Armijo).
+/// A step has to bring the natural map below the largest of this many values before it.
+const MEMORY: usize = 8;
+/// The natural map has to fall below that by at least this share of what a step promises (Armijo).
 const FALL: f64 = 1e-4;
 
 /// Where a search ended: in an answer, or where no step leads down.
@@ -33,31 +39,40 @@ pub(super) fn search(
     let mut map = NaturalMap::at(problem, scale, &z, &problem.forces(&z));
     let mut steps = 0;
     let mut norms = vec![map.norm];
+    let mut best = (z.clone(), map.clone());
     while steps < STEPS && !map.is_zero {
-        if steps >= PATIENCE && map.norm > 0.5 * norms[steps - PATIENCE] {
+        if steps >= PATIENCE && best.1.norm > 0.5 * least(&norms[..=steps - PATIENCE]) {
             break;
         }
         if watch.stop() {
             return Err(ConeFailure::Stopped);
         }
         let equations = Equations::at(problem, scale, &z, &map);
+        let below = norms.iter().rev().take(MEMORY).fold(0.0, |a: f64, norm| a.max(*norm));
         let next = [Equations::newton, Equations::damped]
             .iter()
-            .find_map(|solve| shortened(problem, scale, &z, &map, &solve(&equations, map.norm)?));
+            .find_map(|solve| shortened(problem, scale, (&z, below), &solve(&equations, map.norm)?));
         let Some((point, next)) = next else { break };
         (z, map) = (point, next);
         steps += 1;
         norms.push(map.norm);
+        if map.is_zero || map.norm < best.1.norm {
+            best = (z.clone(), map.clone());
+        }
     }
+    let (z, map) = best;
     Ok(Search { z, states: map.branches, steps })
 }
 
-/// The first of the step, its half, its quarter … along which the natural map falls.
+fn least(norms: &[f64]) -> f64 {
+    norms.iter().fold(f64::INFINITY, |a, norm| a.min(*norm))
+}
+
+/// The first of the step from z, its half, its quarter … on which the natural map comes `below`.
 fn shortened(
     problem: &ConeProblem,
     scale: &DVector<f64>,
-    z: &DVector<f64>,
-    map: &NaturalMap,
+    (z, below): (&DVector<f64>, f64),
     step: &DVector<f64>,
 ) -> Option<(DVector<f64>, NaturalMap)> {
     let mut share = 1.0;
@@ -65,7 +80,7 @@ fn shortened(
         // A full step ends exactly where it points: z − z is 0.
         let point = z + share * step;
         let next = NaturalMap::at(problem, scale, &point, &problem.forces(&point));
-        if next.norm <= (1.0 - FALL * share) * map.norm || next.is_zero {
+        if next.norm <= (1.0 - FALL * share) * below || next.is_zero {
             return Some((point, next));
         }
         share *= 0.5;

@@ -11,8 +11,9 @@ use crate::solve::Case;
 const GROWTH: f64 = 4.0;
 /// … up to this multiple of its present size.
 const MOST: f64 = 1e9;
-/// A bracket of no more than this share of its place is a limit: some 1e-5 beyond it a collapse is certified on the cone.
-const CLOSE: f64 = 2e-5;
+/// A bracket of no more than this share of its place is a limit: closer to it than this answers are found and collapses are
+/// certified on the cone, whatever the angle.
+const CLOSE: f64 = 1e-5;
 
 /// The limit of a load case or load parameter, outwards from its present value, or from 0 where there is no answer.
 pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathError> {
