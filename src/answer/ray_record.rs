@@ -165,4 +165,7 @@ pub struct Ray {
     /// Whether what is certified is that the parts do not fit together.
     #[serde(skip)]
     pub misfit: bool,
+    /// Whether what is certified is certified of this load only, not of every larger one.
+    #[serde(skip)]
+    pub of_this_load: bool,
 }

@@ -23,6 +23,7 @@ use num_traits::{Signed, Zero};
 
 use super::exact_certificate::certify_exactly;
 use super::exact_equations::{Equations, Solved};
+use super::known_normals::with_known_normals;
 use super::motions::{Entry, FreeMotions};
 use super::proof::{BUDGET, Certificate, CertificateSearch};
 use crate::contact::cone::ConePair;
@@ -42,7 +43,8 @@ const CLEAR: f64 = 1e-7;
 /// An inequality that can be slack by no more than this share must hold as an equation.
 const TIGHT: f64 = 1e-6;
 
-/// Looks for a certificate.
+/// Looks for a certificate. In the plane a problem whose normal forces the load decides is left to the search through its
+/// schemes.
 pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSearch {
     let system = &*problem.system;
     let end = Instant::now() + BUDGET;
@@ -53,7 +55,15 @@ pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSe
         return found;
     }
     let exactly = certify_exactly(problem, &pairs, end);
-    CertificateSearch { out_of_time: found.out_of_time || exactly.out_of_time, ..exactly }
+    let out_of_time = found.out_of_time || exactly.out_of_time;
+    if exactly.certificate.is_some() || !system.is_in_space() {
+        return CertificateSearch { out_of_time, ..exactly };
+    }
+    let of_this_load = with_known_normals(problem, &pairs).and_then(|pairs| {
+        let found = certify_pairs(&pairs, motions, load, end).certificate?;
+        Some(Certificate { of_this_load: true, ..found })
+    });
+    CertificateSearch { certificate: of_this_load, out_of_time }
 }
 
 /// The certificate if these amounts of the motions, found for other loads or other friction, are one here, too.
@@ -64,7 +74,12 @@ pub fn certify_again(problem: &ContactProblem, motions: &FreeMotions, amounts: &
     let system = &*problem.system;
     let pairs = widest_cone_pairs(problem);
     let load = Load { forces: &system.forces_of(&problem.load), terms: &system.forces_of(&problem.load_terms) };
-    MotionProgram::new(&pairs, motions, load, Instant::now() + BUDGET)?.verified(amounts, None)
+    let end = Instant::now() + BUDGET;
+    MotionProgram::new(&pairs, motions, load, end)?.verified(amounts, None).or_else(|| {
+        let pairs = with_known_normals(problem, &pairs).filter(|_| system.is_in_space())?;
+        let found = MotionProgram::new(&pairs, motions, load, end)?.verified(amounts, None)?;
+        Some(Certificate { of_this_load: true, ..found })
+    })
 }
 
 /// Forces over the joints with the magnitudes that each was summed from.
@@ -376,6 +391,7 @@ impl<'a> MotionProgram<'a> {
             power: power.value / largest,
             dissipation: taken.value / largest,
             exact: needed_exact || exact_amounts.is_some(),
+            of_this_load: false,
             amounts: (0..amounts.len()).map(amount).collect(),
         })
     }

@@ -78,6 +78,7 @@ pub(super) fn certify_exactly(problem: &ContactProblem, pairs: &[ConePair], end:
         power: nearest(&power) / largest,
         dissipation: dissipation / largest,
         exact: true,
+        of_this_load: false,
         amounts: Vec::new(),
     };
     CertificateSearch { certificate: Some(certificate), out_of_time: false }

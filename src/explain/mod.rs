@@ -5,6 +5,7 @@ pub mod certificate;
 mod exact_certificate;
 mod exact_equations;
 pub mod kernel;
+mod known_normals;
 pub mod loose;
 pub mod margin;
 pub mod misfit;

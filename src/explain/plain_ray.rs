@@ -101,6 +101,7 @@ impl PlainRay {
                 short(self.p)
             ),
             misfit: false,
+            of_this_load: false,
         }
     }
 }

@@ -400,7 +400,13 @@ impl RayReport {
                 }
             }
             Some(Verdict::Certified) => {
-                text += " Proved: no contact forces within the laws' bounds balance the loads";
+                text += match &self.certificate {
+                    Some(found) if found.of_this_load => {
+                        " Proved: no slip is felt along the normals, so that the load alone decides by what forces the pairs are \
+                         pressed, and no friction within the bounds that these give balances the loads"
+                    }
+                    _ => " Proved: no contact forces within the laws' bounds balance the loads",
+                };
                 if let Some(certificate) = &self.certificate {
                     let taken = if certificate.dissipation > 0.0 {
                         format!("at most {} of it", short(certificate.dissipation))
@@ -454,6 +460,7 @@ impl RayReport {
             mode: self.mode_words(system),
             explanation: self.explanation(system, covering),
             misfit: self.misfit.is_some(),
+            of_this_load: self.certificate.as_ref().is_some_and(|found| found.of_this_load),
         }
     }
 }

@@ -167,14 +167,12 @@ impl Route<'_> {
         early.map(|leg| leg.way.end_sentence()).chain(steps).collect()
     }
 
-    /// Whether it is certified that there is no answer further on, downwards or upwards: the loads that forces can balance at
-    /// all are a convex set, so that a path over a load which ends in a certified collapse has left it for good.
+    /// Whether it is certified that there is no answer further on, downwards or upwards.
     pub fn ends_for_good(&self, upwards: bool) -> bool {
         self.legs.iter().any(|leg| {
             let ends = leg.way.stretches();
             let rises = ends.first().zip(ends.last()).is_some_and(|(first, last)| last[1] > first[0]);
-            let over_load = matches!(&leg.way, Way::OnCone(path) if !path.over.is_friction());
-            over_load && rises == upwards && matches!(leg.way.end(), PathEnd::Collapse(_))
+            rises == upwards && matches!(&leg.way, Way::OnCone(path) if path.for_good)
         })
     }
 

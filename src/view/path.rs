@@ -180,7 +180,9 @@ pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style
         let class = collapse.class.word();
         let verdict = collapse.verdict.map_or(String::new(), |verdict| format!(", {}", verdict.word()));
         style.paragraph(out, Role::Warning, &format!("collapse ({class}{verdict}): {}", collapse.mode))?;
-        if let Some(beyond) = limit.beyond_sentence().filter(|_| collapse.verdict != Some(Verdict::Certified)) {
+        if let Some(beyond) =
+            limit.beyond_sentence().filter(|_| collapse.verdict != Some(Verdict::Certified) || collapse.of_this_load)
+        {
             style.paragraph(out, Role::Muted, &beyond)?;
         }
     }

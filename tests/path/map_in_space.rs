@@ -9,13 +9,13 @@ use super::find::{near, number};
 use crate::common::lines::{read, report, text};
 use crate::common::scenario_text;
 
-/// A block of weight 2 with f = 1/2 pushed by (X, Y), on springs of `k` in all directions or rigid: it stands where
-/// |(X, Y)| ≤ 1.
-fn block(k: f64) -> Session {
+/// A block of weight 2 with f = 1/2 pushed by (X, Y), on springs of `k` along the normal and `k_t` along the tangents, rigid where
+/// these are 0: it stands where |(X, Y)| ≤ 1.
+fn block(k: f64, k_t: f64) -> Session {
     read(&scenario_text(json!({
         "parameters": { "X": 0.1, "Y": 0.2, "f": 0.5 },
         "contact_system": {
-            "pairs": ["a"], "tangents": 2, "stiffness": [[k, 0, 0], [0, k, 0], [0, 0, k]], "friction": ["f"],
+            "pairs": ["a"], "tangents": 2, "stiffness": [[k, 0, 0], [0, k_t, 0], [0, 0, k_t]], "friction": ["f"],
             "loads": { "weight": { "factor": 2, "vector": [1, 0, 0] }, "x": { "factor": "X", "vector": [0, 1, 0] },
                        "y": { "factor": "Y", "vector": [0, 0, 1] } } }
     })))
@@ -32,11 +32,11 @@ fn region<'a>(map: &'a Value, state: Option<&str>) -> &'a Value {
 /// which is certified.
 #[test]
 fn two_pushes_on_a_block_give_the_disc_of_friction() {
-    for (k, outside, line, area) in [
-        (1.0, Some("slip"), "map X -1.5..1.4 Y 0..1.3", [PI / 2.0, 2.9 * 1.3]),
-        (0.0, None, "map X 0..1.4 Y 0..1.3", [PI / 4.0, 1.4 * 1.3]),
+    for (k, k_t, outside, line, area) in [
+        (1.0, 1.0, Some("slip"), "map X -1.5..1.4 Y 0..1.3", [PI / 2.0, 2.9 * 1.3]),
+        (0.0, 0.0, None, "map X 0..1.4 Y 0..1.3", [PI / 4.0, 1.4 * 1.3]),
     ] {
-        let map = report(&mut block(k), line).expect("a map");
+        let map = report(&mut block(k, k_t), line).expect("a map");
         near(&region(&map, Some("stick"))["area"], area[0], 1e-8);
         near(&region(&map, outside)["area"], area[1] - area[0], 1e-8);
         assert_eq!((&map["exact"], &map["complete"]), (&false.into(), &true.into()));
@@ -48,10 +48,36 @@ fn two_pushes_on_a_block_give_the_disc_of_friction() {
     }
 }
 
+/// Held by a spring along the normal alone the block slides away at the same circle: ∫ √(1 − Y²) from 0.5 to 0.8 of it is what
+/// stands. A few lines tell it, each with its end.
+#[test]
+fn a_block_on_a_spring_slides_away_at_the_disc_of_friction() {
+    let map = report(&mut block(1.0, 0.0), "map X 0..1 Y 0.5..0.8").expect("a map");
+    let below = |y: f64| 0.5 * (y * (1.0 - y * y).sqrt() + y.asin());
+    let area = below(0.8) - below(0.5);
+    near(&region(&map, Some("stick"))["area"], area, 1e-9);
+    let collapse = region(&map, None);
+    near(&collapse["area"], 0.3 - area, 1e-9);
+    assert_eq!((&collapse["class"], &collapse["verdict"]), (&"mechanism".into(), &"certified".into()));
+    assert_eq!(map["complete"], true);
+}
+
+/// At X = 0.6 a path over Y ends at 0.8, as narrowly as a breakpoint is located: rigid, or held by a spring along the normal.
+#[test]
+fn the_end_of_a_path_is_as_narrow_as_a_breakpoint() {
+    for k in [0.0, 1.0] {
+        let mut session = block(k, 0.0);
+        report(&mut session, "set X 0.6").expect("set");
+        let path = report(&mut session, "trace Y to 2").expect("a path");
+        let end = path["along"]["values"].as_array().and_then(|values| values.last()).map(number).expect("an end");
+        assert!((end - 0.8).abs() <= 1e-11, "{k}: {end}");
+    }
+}
+
 /// Pushed by 1 along y and by X along x, the block stands from f = √(1 + X²)/2 on: 1/4 (X √(1 + X²) + asinh X) over X.
 #[test]
 fn friction_against_a_push() {
-    let mut session = block(1.0);
+    let mut session = block(1.0, 1.0);
     report(&mut session, "set Y 1").expect("set");
     let map = report(&mut session, "map X 0..1 f 0.3..0.9").expect("a map");
     let below = 0.25 * (2f64.sqrt() + 1f64.asinh());
@@ -62,7 +88,7 @@ fn friction_against_a_push() {
 /// With the cone off the block stands where the polygon of four facets holds it: in a square, K tan(π/K) f² W² = 4.
 #[test]
 fn the_polygon_has_a_map_of_its_own() {
-    let mut session = block(1.0);
+    let mut session = block(1.0, 1.0);
     for rule in ["set facets 4", "set cone off"] {
         report(&mut session, rule).expect(rule);
     }
@@ -75,7 +101,7 @@ fn the_polygon_has_a_map_of_its_own() {
 /// at |(X, Y)| = 4.
 #[test]
 fn places_are_found_along_the_cone() {
-    let mut session = block(1.0);
+    let mut session = block(1.0, 1.0);
     report(&mut session, "set X 2").expect("set");
     let envelope = report(&mut session, "envelope z_t1 a over Y -3..4").expect("an envelope");
     let peaks = &envelope["envelope"][0];
@@ -95,7 +121,7 @@ fn places_are_found_along_the_cone() {
 /// than a step.
 #[test]
 fn what_is_done_and_undone_within_a_step_is_found() {
-    let mut session = block(1.0);
+    let mut session = block(1.0, 1.0);
     for line in ["set X 0.9999999999", "set Y -2"] {
         report(&mut session, line).expect(line);
     }

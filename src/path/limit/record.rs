@@ -78,7 +78,7 @@ impl Limit {
     /// an answer, is driven harder by every load beyond. Anything else is known of one load only.
     pub fn beyond_sentence(&self) -> Option<String> {
         let collapse = self.collapse.as_ref()?;
-        if collapse.verdict == Some(Verdict::Certified) && !collapse.misfit {
+        if collapse.verdict == Some(Verdict::Certified) && !collapse.misfit && !collapse.of_this_load {
             return Some("no load beyond it can be carried: proved".to_owned());
         }
         let factor = self.factor?;

@@ -23,9 +23,11 @@ use super::{friction, start};
 use crate::answer::record::{PairState, State};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
-use crate::explain::certificate::certify;
+use crate::explain::certificate::{certify, certify_again};
 use crate::explain::motions::FreeMotions;
+use crate::explain::proof::Certificate;
 use crate::explain::ray::{RayReport, explain};
+use crate::lcp::exact::dyadic::nearest;
 use crate::model::rules::{Covering, Rules};
 use crate::solve::{Case, Prepared, Solved};
 use crate::text::words::short;
@@ -39,10 +41,8 @@ const STEPS: f64 = 64.0;
 const GROWTH: f64 = 1.5;
 /// … up to this multiple of the size of the load at the start.
 const MOST: f64 = 1e9;
-/// A breakpoint is located to this share of the range.
+/// A breakpoint is located to this share of the range, and so is the end: no answer near so close ahead is none at all.
 const HERE: f64 = 1e-12;
-/// Where no answer is near even this close ahead, there is none.
-const CLOSE: f64 = 1e-9;
 /// Where none is near, another answer, or a certified collapse, is looked for this share of the range further on.
 const BEYOND: f64 = 1e-7;
 /// No path has more steps than this.
@@ -67,6 +67,8 @@ pub struct ConePath {
     pub breakpoints: Vec<Breakpoint>,
     /// Why it ends.
     pub end: PathEnd,
+    /// Whether it ends in a collapse that goes on at every value up to the target: followed over a load.
+    pub for_good: bool,
 }
 
 impl ConePath {
@@ -176,7 +178,8 @@ pub fn trace_friction(case: Case<'_>, solved: Option<&Solved>, name: &str, to: f
 /// What lies beyond the end of what Newton's method follows.
 enum Beyond {
     Jump(Box<Stand>),
-    End(PathEnd),
+    /// With [`ConePath::for_good`].
+    End(PathEnd, bool),
 }
 
 /// How a path goes on.
@@ -206,6 +209,18 @@ impl Aim {
         self.size.max(value.abs())
     }
 
+    /// How far it is from a value to one ahead.
+    fn way(&self, from: f64, to: f64) -> f64 {
+        (to - from) * self.sign
+    }
+
+    /// The way from a value halfway to one where no answer was found; all of it where it is so short that what was not found
+    /// from afar is looked for once more.
+    fn halfway(&self, from: f64, lost: f64) -> f64 {
+        let way = self.way(from, lost);
+        if 0.5 * way > HERE * self.size_at(from) { 0.5 * way } else { way }
+    }
+
     fn next(&self, value: f64, length: f64) -> f64 {
         match self.target {
             Some(to) if (to - value).abs() <= length * (1.0 + 1e-9) => to,
@@ -227,10 +242,13 @@ impl Path<'_> {
             places: vec![here.place.clone()],
             breakpoints: Vec::new(),
             end: PathEnd::Target,
+            for_good: false,
         };
         let mut length = aim.size / STEPS;
         // The place before this one in its scheme.
         let mut before: Option<Stand> = None;
+        // The nearest place ahead where none was found.
+        let mut lost: Option<f64> = None;
         while aim.target.is_none_or(|to| here.value() != to) {
             self.goes_on(&aim, &here, &path)?;
             if aim.target.is_none() && (here.value() - start).abs() > MOST * aim.size {
@@ -239,7 +257,8 @@ impl Path<'_> {
             }
             let to = aim.next(here.value(), length);
             let mut next = self.near(&stepper, to, &guess(before.as_ref(), &here, to))?;
-            if next.is_none() && length > CLOSE * aim.size_at(here.value()) {
+            if next.is_none() && length > HERE * aim.size_at(here.value()) {
+                lost = Some(to);
                 length *= 0.5;
                 continue;
             }
@@ -260,6 +279,10 @@ impl Path<'_> {
                     Some(_) => (2.0 * length).min(aim.size / STEPS),
                     None => GROWTH * length,
                 };
+                lost = lost.filter(|lost| aim.way(here.value(), *lost) > HERE * aim.size_at(here.value()));
+                if let Some(lost) = lost {
+                    length = length.min(aim.halfway(here.value(), lost));
+                }
                 continue;
             }
             // The size of z within the whole step: next to the place where a slip begins or ends, only a remainder of
@@ -277,16 +300,16 @@ impl Path<'_> {
                     let moved = (&next.step.z - &last.step.z).amax();
                     (next, moved > JUMP * size)
                 }
-                None => match self.beyond(&stepper, &last, aim.sign * aim.size_at(last.value()))? {
+                None => match self.beyond(&stepper, &last, &aim)? {
                     Beyond::Jump(next) => (*next, true),
-                    Beyond::End(end) => {
-                        path.end = end;
+                    Beyond::End(end, for_good) => {
+                        (path.end, path.for_good) = (end, for_good);
                         break;
                     }
                 },
             };
             change(&mut path, &last, &next, jump);
-            (here, before, length) = (next, None, aim.size / STEPS);
+            (here, before, lost, length) = (next, None, None, aim.size / STEPS);
         }
         Ok(path)
     }
@@ -353,19 +376,33 @@ impl Path<'_> {
     }
 
     /// What lies beyond a value near which there is no further answer.
-    fn beyond(&self, stepper: &Stepper<'_>, here: &Stand, size: f64) -> Result<Beyond, PathError> {
-        let value = here.value() + BEYOND * size;
+    fn beyond(&self, stepper: &Stepper<'_>, here: &Stand, aim: &Aim) -> Result<Beyond, PathError> {
+        let value = here.value() + BEYOND * aim.sign * aim.size_at(here.value());
         let problem = self.problem(value)?;
         if let Ok(step) = stepper.anywhere(problem.clone(), &DVector::zeros(here.step.z.len()))? {
             return Ok(Beyond::Jump(Box::new(self.stand(value, step)?)));
         }
         let built = self.case.prepared.built();
-        let Some(certificate) = certify(&problem, &FreeMotions::new(&problem.system, built)).certificate else {
-            return Ok(Beyond::End(PathEnd::NoAnswer));
+        let motions = FreeMotions::new(&problem.system, built);
+        let Some(certificate) = certify(&problem, &motions).certificate else {
+            return Ok(Beyond::End(PathEnd::NoAnswer, false));
         };
+        let for_good = !self.over.is_friction() && self.goes_on_to(aim, &certificate, &motions)?;
         let mut report = RayReport::of_certificate(&problem, certificate);
         explain(&mut report, &problem, built);
-        Ok(Beyond::End(PathEnd::Collapse(Box::new(report.record(&problem.system, Covering::default())))))
+        let collapse = PathEnd::Collapse(Box::new(report.record(&problem.system, Covering::default())));
+        Ok(Beyond::End(collapse, for_good))
+    }
+
+    /// Whether a collapse goes on from its place up to the target. The loads that forces can balance at all are a convex set, which a
+    /// path leaves once. What is proved of one load only goes on where its motion proves it at the target as well: work, normal
+    /// forces and what friction can take are straight lines between the two.
+    fn goes_on_to(&self, aim: &Aim, certificate: &Certificate, motions: &FreeMotions) -> Result<bool, PathError> {
+        let Some(target) = aim.target.filter(|_| certificate.of_this_load) else {
+            return Ok(!certificate.of_this_load);
+        };
+        let amounts: Vec<f64> = certificate.amounts.iter().map(nearest).collect();
+        Ok(certify_again(&self.problem(target)?, motions, &amounts).is_some())
     }
 
     fn breakdown(&self, at: f64, why: String) -> PathError {

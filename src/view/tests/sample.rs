@@ -181,6 +181,7 @@ pub fn beam_ray() -> Answer {
                       or a smaller F2 would stop it"
             .into(),
         misfit: false,
+        of_this_load: false,
     });
     answer.displacements = None;
     answer.members = None;
