@@ -43,8 +43,8 @@ const CLEAR: f64 = 1e-7;
 /// An inequality that can be slack by no more than this share must hold as an equation.
 const TIGHT: f64 = 1e-6;
 
-/// Looks for a certificate. In the plane a problem whose normal forces the load decides is left to the search through its
-/// schemes.
+/// Looks for a certificate. In the plane a problem whose normal forces the load decides is left to the search through
+/// its schemes.
 pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSearch {
     let system = &*problem.system;
     let end = Instant::now() + BUDGET;

@@ -1,14 +1,14 @@
 //! Pairs whose forces along the normals the load alone decides: elastic along the normals, free to slip away.
 //!
-//! A motion that slides them costs nothing and does not part them, so that by statics alone they might be pressed by any
-//! force, and friction might hold any load. But where no slip is felt along the normals, R_nτ = 0, and the main system presses
-//! every pair, x_n = RF_n ≥ 0, these are the forces of every answer:
+//! A motion that slides them costs nothing and does not part them, so that by statics alone they might be pressed by
+//! any force, and friction might hold any load. But where no slip is felt along the normals, R_nτ = 0, and the main
+//! system presses every pair, x_n = RF_n ≥ 0, these are the forces of every answer:
 //!
 //! ```text
 //!     x_n = R_nn z_n + RF_n ≥ 0 ⟂ z_n ≥ 0     ⇒     0 = z_nᵀ x_n = z_nᵀ R_nn z_n + z_nᵀ RF_n,   neither < 0   ⇒   R_nn z_n = 0
 //! ```
-//! Then the bounds of friction are known, f RF_n + c, and a proof needs motions that part no pair: it is one of these forces
-//! only, and a larger load may press harder.
+//! Then the bounds of friction are known, f RF_n + c, and a proof needs motions that part no pair: it is one of these
+//! forces only, and a larger load may press harder.
 
 use nalgebra::DVector;
 

@@ -34,8 +34,8 @@ fn moved(cone: &[Row], bounds: &[f64]) -> Vec<Row> {
     cone.iter().zip(bounds).map(|(row, bound)| Row { terms: row.terms.clone(), bound: *bound }).collect()
 }
 
-/// A cone around a point far from its apex, `rests` there and the `length` of all but the first of them. The first row t
-/// against the vector v, of which u lies along its `rests` and w across:
+/// A cone around a point far from its apex, `rests` there and the `length` of all but the first of them. The first
+/// row t against the vector v, of which u lies along its `rests` and w across:
 ///
 /// ```text
 ///   t ≥ |v|   ⇔   (t − u)(t + u) ≥ |w|²,   t + u ≥ 0

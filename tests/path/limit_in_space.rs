@@ -10,8 +10,8 @@ use stickslip::path::limit::{Limit, limit};
 
 use crate::common::Case;
 
-/// Feet of a rigid body: R = 0, whatever moves costs nothing. Each is pressed by `weight`, and pushed by 1 of the load `push`
-/// along an angle of its own, in degrees.
+/// Feet of a rigid body: R = 0, whatever moves costs nothing. Each is pressed by `weight`, and pushed by 1 of the
+/// load `push` along an angle of its own, in degrees.
 fn feet(angles: &[f64], weight: f64, friction: f64, facets: usize) -> Case {
     let m = angles.len();
     let normal: Vec<f64> = (0..3 * m).map(|row| if row < m { weight } else { 0.0 }).collect();
@@ -32,8 +32,8 @@ fn found(case: &Case, name: &str) -> Limit {
     limit(case, None, name).expect("a limit")
 }
 
-/// Pushed at any angle each foot holds f times its weight: the limit of the cone, whatever the polygon allows between its
-/// facets.
+/// Pushed at any angle each foot holds f times its weight: the limit of the cone, whatever the polygon allows between
+/// its facets.
 #[test]
 fn a_push_at_any_angle_ends_at_its_friction() {
     for (angle, facets) in [(0.0, 8), (17.0, 8), (17.0, 4), (45.0, 6), (211.0, 16)] {
@@ -52,8 +52,8 @@ fn a_push_at_any_angle_ends_at_its_friction() {
     }
 }
 
-/// The loads of a load case without a parameter, feet pushed each its own way: the first foot that slips is not the limit of
-/// a rigid body, but here each moves alone.
+/// The loads of a load case without a parameter, feet pushed each its own way: the first foot that slips is not the
+/// limit of a rigid body, but here each moves alone.
 #[test]
 fn a_load_case_is_named_as_well_as_a_parameter() {
     let limit = found(&feet(&[10.0, 130.0, 250.0], 1.0, 0.5, 8), "push");
@@ -83,9 +83,9 @@ fn sharp(case: &Case, limit: f64, what: &str) {
     assert_eq!(beyond.verdict, Some(Verdict::Certified), "{what}, beyond");
 }
 
-/// A block of bricks of weight W is pushed by P at an angle: at its base it slides at P = f W, at the height h of its top it
-/// overturns over the edge that it comes to first, at P = W/(2 h) · min(a/|cos|, b/|sin|). Near to sliding all of it has slipped far,
-/// each foot almost the same way.
+/// A block of bricks of weight W is pushed by P at an angle: at its base it slides at P = f W, at the height h of its
+/// top it overturns over the edge that it comes to first, at P = W/(2 h) · min(a/|cos|, b/|sin|). Near to sliding all
+/// of it has slipped far, each foot almost the same way.
 #[test]
 fn a_block_of_bricks_is_sharp_at_its_limit_at_every_angle() {
     let sharp_block = |size: [f64; 3], divisions: [u32; 3], angle: f64, friction: f64| {
@@ -140,9 +140,9 @@ fn feet_are_sharp_at_their_limit_at_every_angle() {
     }
 }
 
-/// Pressed by W = 2 against a spring along the normal and free to slide, a foot slips away beyond f W in every direction. What
-/// slips parts no pair, and by statics alone the spring might press it by any force; but no slip is felt along the normal. That is
-/// said of this load: another may press harder.
+/// Pressed by W = 2 against a spring along the normal and free to slide, a foot slips away beyond f W in every
+/// direction. What slips parts no pair, and by statics alone the spring might press it by any force; but no slip is
+/// felt along the normal. That is said of this load: another may press harder.
 #[test]
 fn what_a_spring_presses_slides_away_at_the_friction_of_its_load() {
     let case: Value = json!({ "parameters": { "F": 0.1 }, "contact_system": {
@@ -157,8 +157,8 @@ fn what_a_spring_presses_slides_away_at_the_friction_of_its_load() {
     assert!(limit.beyond_sentence().is_some_and(|words| words.contains("not proved")), "{:?}", limit.beyond_sentence());
 }
 
-/// Where slips press the pair, nothing is known of its force beforehand, and nothing is claimed: R has z_t2 in its kernel, and
-/// along t1 it couples with the normal.
+/// Where slips press the pair, nothing is known of its force beforehand, and nothing is claimed: R has z_t2 in its
+/// kernel, and along t1 it couples with the normal.
 #[test]
 fn what_slips_press_is_not_certified_by_the_load() {
     let case: Value = json!({ "parameters": { "F": 2.0 }, "contact_system": {

@@ -9,8 +9,8 @@ use super::find::{near, number};
 use crate::common::lines::{read, report, text};
 use crate::common::scenario_text;
 
-/// A block of weight 2 with f = 1/2 pushed by (X, Y), on springs of `k` along the normal and `k_t` along the tangents, rigid where
-/// these are 0: it stands where |(X, Y)| ≤ 1.
+/// A block of weight 2 with f = 1/2 pushed by (X, Y), on springs of `k` along the normal and `k_t` along the
+/// tangents, rigid where these are 0: it stands where |(X, Y)| ≤ 1.
 fn block(k: f64, k_t: f64) -> Session {
     read(&scenario_text(json!({
         "parameters": { "X": 0.1, "Y": 0.2, "f": 0.5 },
@@ -28,8 +28,8 @@ fn region<'a>(map: &'a Value, state: Option<&str>) -> &'a Value {
     one
 }
 
-/// A disc of area π f² W², here half of it or a quarter; around it the block slips against its springs, or nothing stands,
-/// which is certified.
+/// A disc of area π f² W², here half of it or a quarter; around it the block slips against its springs, or nothing
+/// stands, which is certified.
 #[test]
 fn two_pushes_on_a_block_give_the_disc_of_friction() {
     for (k, k_t, outside, line, area) in [
@@ -48,8 +48,8 @@ fn two_pushes_on_a_block_give_the_disc_of_friction() {
     }
 }
 
-/// Held by a spring along the normal alone the block slides away at the same circle: ∫ √(1 − Y²) from 0.5 to 0.8 of it is what
-/// stands. A few lines tell it, each with its end.
+/// Held by a spring along the normal alone the block slides away at the same circle: ∫ √(1 − Y²) from 0.5 to 0.8 of
+/// it is what stands. A few lines tell it, each with its end.
 #[test]
 fn a_block_on_a_spring_slides_away_at_the_disc_of_friction() {
     let map = report(&mut block(1.0, 0.0), "map X 0..1 Y 0.5..0.8").expect("a map");
@@ -62,7 +62,8 @@ fn a_block_on_a_spring_slides_away_at_the_disc_of_friction() {
     assert_eq!(map["complete"], true);
 }
 
-/// At X = 0.6 a path over Y ends at 0.8, as narrowly as a breakpoint is located: rigid, or held by a spring along the normal.
+/// At X = 0.6 a path over Y ends at 0.8, as narrowly as a breakpoint is located: rigid, or held by a spring along the
+/// normal.
 #[test]
 fn the_end_of_a_path_is_as_narrow_as_a_breakpoint() {
     for k in [0.0, 1.0] {
@@ -97,8 +98,8 @@ fn the_polygon_has_a_map_of_its_own() {
     assert!(map["notes"].to_string().contains("solved one by one"), "{}", map["notes"]);
 }
 
-/// z = −(X, Y)(1 − 1/|(X, Y)|) where that is beyond 1: at X = 2 the slip along t1 is −1 at Y = 0, farther elsewhere, and −3/2
-/// at |(X, Y)| = 4.
+/// z = −(X, Y)(1 − 1/|(X, Y)|) where that is beyond 1: at X = 2 the slip along t1 is −1 at Y = 0, farther elsewhere,
+/// and −3/2 at |(X, Y)| = 4.
 #[test]
 fn places_are_found_along_the_cone() {
     let mut session = block(1.0, 1.0);

@@ -159,8 +159,8 @@ fn row(blocks: usize) -> Case {
     }))
 }
 
-/// Three blocks in a row stand under their weight and slide together beyond f W: what a push meets is the friction of all
-/// floors, Σ x_n is the weight, and the sums of forces do not depend on how the corners share them.
+/// Three blocks in a row stand under their weight and slide together beyond f W: what a push meets is the friction of
+/// all floors, Σ x_n is the weight, and the sums of forces do not depend on how the corners share them.
 #[test]
 fn a_row_of_blocks_slides_as_one() {
     let (case, weight, f) = (row(3), 3.0, 0.5);

@@ -1,8 +1,9 @@
 //! Newton's method on the natural map, with halved steps: its semi-smooth derivative on the joints that move.
 //!
-//! The map need not fall in every step, only below the largest of its last values (Grippo, Lampariello & Lucidi 1986). Near a
-//! limit of sliding the answer lies far off, along a motion that costs no energy, at the end of a bent valley: a search that
-//! only ever goes down creeps along its floor, one that may climb its side crosses it in some ten steps.
+//! The map need not fall in every step, only below the largest of its last values (Grippo, Lampariello & Lucidi
+//! 1986). Near a limit of sliding the answer lies far off, along a motion that costs no energy, at the end of a bent
+//! valley: a search that only ever goes down creeps along its floor, one that may climb its side crosses it in some
+//! ten steps.
 
 use nalgebra::{DMatrix, DVector};
 

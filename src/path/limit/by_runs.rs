@@ -1,5 +1,5 @@
-//! The limit of a load in space: no path leads there, since slips turn; runs of their own bracket it, each with an answer
-//! on Coulomb's cone or a collapse that is certified on it.
+//! The limit of a load in space: no path leads there, since slips turn; runs of their own bracket it, each with an
+//! answer on Coulomb's cone or a collapse that is certified on it.
 
 use super::record::{Limit, beside, size};
 use crate::path::edge::{Run, narrowed};
@@ -11,8 +11,8 @@ use crate::solve::Case;
 const GROWTH: f64 = 4.0;
 /// … up to this multiple of its present size.
 const MOST: f64 = 1e9;
-/// A bracket of no more than this share of its place is a limit: closer to it than this answers are found and collapses are
-/// certified on the cone, whatever the angle.
+/// A bracket of no more than this share of its place is a limit: closer to it than this answers are found and
+/// collapses are certified on the cone, whatever the angle.
 const CLOSE: f64 = 1e-5;
 
 /// The limit of a load case or load parameter, outwards from its present value, or from 0 where there is no answer.

@@ -1,9 +1,9 @@
 //! The answer in space followed over a load or over friction, on Coulomb's cone.
 //!
-//! Directions of slip turn on the way, so that nothing is affine between two breakpoints: the way is taken in steps, each
-//! an answer of its own that Newton's method finds from the one before. Where pairs do something else at the end of a step the
-//! place is searched for between its ends. Every place of the path is freshly checked; that none was overlooked between two of
-//! them is not proved.
+//! Directions of slip turn on the way, so that nothing is affine between two breakpoints: the way is taken in steps,
+//! each an answer of its own that Newton's method finds from the one before. Where pairs do something else at the end
+//! of a step the place is searched for between its ends. Every place of the path is freshly checked; that none was
+//! overlooked between two of them is not proved.
 
 mod over;
 mod stand;
@@ -214,8 +214,8 @@ impl Aim {
         (to - from) * self.sign
     }
 
-    /// The way from a value halfway to one where no answer was found; all of it where it is so short that what was not found
-    /// from afar is looked for once more.
+    /// The way from a value halfway to one where no answer was found; all of it where it is so short that what was
+    /// not found from afar is looked for once more.
     fn halfway(&self, from: f64, lost: f64) -> f64 {
         let way = self.way(from, lost);
         if 0.5 * way > HERE * self.size_at(from) { 0.5 * way } else { way }
@@ -348,8 +348,8 @@ impl Path<'_> {
         }
     }
 
-    /// The two places between which the scheme of the first ends. The second is missing where no answer was found near the
-    /// first.
+    /// The two places between which the scheme of the first ends. The second is missing where no answer was found
+    /// near the first.
     fn narrowed(
         &self,
         stepper: &Stepper<'_>,
@@ -394,9 +394,9 @@ impl Path<'_> {
         Ok(Beyond::End(collapse, for_good))
     }
 
-    /// Whether a collapse goes on from its place up to the target. The loads that forces can balance at all are a convex set, which a
-    /// path leaves once. What is proved of one load only goes on where its motion proves it at the target as well: work, normal
-    /// forces and what friction can take are straight lines between the two.
+    /// Whether a collapse goes on from its place up to the target. The loads that forces can balance at all are a
+    /// convex set, which a path leaves once. What is proved of one load only goes on where its motion proves it at
+    /// the target as well: work, normal forces and what friction can take are straight lines between the two.
     fn goes_on_to(&self, aim: &Aim, certificate: &Certificate, motions: &FreeMotions) -> Result<bool, PathError> {
         let Some(target) = aim.target.filter(|_| certificate.of_this_load) else {
             return Ok(!certificate.of_this_load);
