@@ -38,6 +38,8 @@ pub struct BalancedState<'a> {
     pub factors: &'a [f64],
     /// Mutual displacements of all joints.
     pub dislocation: DVector<f64>,
+    /// The magnitudes of the terms that each of these is the sum of.
+    pub terms: DVector<f64>,
     /// Joint forces λ.
     pub force: &'a DVector<f64>,
 }
@@ -109,7 +111,7 @@ impl MainSystem {
     pub fn equilibrium_bounds(&self, structure: &Structure, states: &[BalancedState<'_>]) -> Vec<f64> {
         let whole = |state: &BalancedState<'_>| {
             let u = self.displacements(state.factors, &state.dislocation);
-            self.compatibility_residual(&u, &state.dislocation)
+            self.compatibility_residual(&u, &state.dislocation, &state.terms)
                 + self.equilibrium_residual(structure, &u, state.force, state.factors)
         };
         if self.doubled.is_some() {
@@ -124,8 +126,8 @@ impl MainSystem {
                 let residual = self.unheld(self.unbalanced(&u, state.force, state.factors));
                 let rounding = self.handed_on(self.rounding(&u, state.factors));
                 let nothing = vec![0.0; residual.len()];
-                let bound =
-                    self.compatibility_residual(&u, &state.dislocation) + largest_share(&residual, &nothing, &rounding);
+                let compatibility = self.compatibility_residual(&u, &state.dislocation, &state.terms);
+                let bound = compatibility + largest_share(&residual, &nothing, &rounding);
                 if bound <= TOLERANCE { bound } else { whole(state) }
             })
             .collect()

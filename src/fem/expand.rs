@@ -106,13 +106,13 @@ impl MainSystem {
     }
 
     /// Largest difference of a repeated joint's z from B u, as a share of the displacements of its nodes. Nodes at rest
-    /// have the rounding of the largest displacement.
-    pub fn compatibility_residual(&self, u: &Displacements, z: &DVector<f64>) -> f64 {
+    /// have the rounding of the largest displacement, and of the largest of the `terms` that each z is the sum of.
+    pub fn compatibility_residual(&self, u: &Displacements, z: &DVector<f64>, terms: &DVector<f64>) -> f64 {
         if self.repeated.is_empty() {
             return 0.0;
         }
         let length = |&[x, y, z, ..]: &[f64; 6]| length([x, y, z]);
-        let rounding = 64.0 * f64::EPSILON * u.0.iter().map(length).fold(0.0, f64::max);
+        let rounding = 64.0 * f64::EPSILON * u.0.iter().map(length).fold(terms.amax(), f64::max);
         let share = |joint: usize| {
             let (mut rest, mut size) = (z[joint], z[joint].abs());
             for (node, a) in &self.all_joints[joint].terms {

@@ -29,8 +29,8 @@ const NAMED: usize = 6;
 const SLIP_ZERO: f64 = 16.0 * f64::EPSILON;
 
 impl Prepared {
-    /// Displacements, members, reactions and the fresh check of an answer, and the notes on its state. Whatever an earlier
-    /// state has left of these is replaced.
+    /// Displacements, members, reactions and the fresh check of an answer, and the notes on its state. Whatever an
+    /// earlier state has left of these is replaced.
     pub(super) fn complete(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) {
         answer.notes = notes_on_shared_forces(problem, state);
         let equilibrium = self.recover(answer, problem, state);
@@ -56,8 +56,10 @@ impl Prepared {
     pub(super) fn recover(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) -> Option<f64> {
         let mut equilibrium = None;
         if let Geometry::Structure { main, structure, .. } = &*self.geometry {
-            let u = main.displacements(&problem.factors, &problem.dislocation(&state.z));
-            let compatibility = main.compatibility_residual(&u, &problem.dislocation(&state.z));
+            let dislocation = problem.dislocation(&state.z);
+            let u = main.displacements(&problem.factors, &dislocation);
+            let terms = problem.dislocation_sizes(state.z.abs());
+            let compatibility = main.compatibility_residual(&u, &dislocation, &terms);
             equilibrium =
                 Some(compatibility + main.equilibrium_residual(structure, &u, &state.force, &problem.factors));
             answer.members = self.members(&u, &problem.factors);

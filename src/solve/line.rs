@@ -213,6 +213,7 @@ impl Unbalanced {
                 .map(|state| BalancedState {
                     factors: &state.problem.factors,
                     dislocation: state.problem.dislocation(&state.joints.z),
+                    terms: state.problem.dislocation_sizes(state.joints.z.abs()),
                     force: &state.joints.force,
                 })
                 .collect();

@@ -74,6 +74,29 @@ fn guide_with_clearances_in_space() {
     }
 }
 
+/// Of two floors under a shoe the upper one carries N, the other stays open by g1, whichever of them is named first;
+/// along them the tip slips by (T − f N)/k_a.
+#[test]
+fn shoe_above_two_floors() {
+    let (k_a, n, f, g1) = (EA / L, 1.5, 0.2, 0.01);
+    let floors = [("far", [0.0, 0.0, 1.0], "f", "g1"), ("near", [0.0, 0.0, 1.0], "f", "zero")];
+    for rotation in turned() {
+        for first in [0, 1] {
+            let case = guided(&rotation, &[floors[first], floors[1 - first]]);
+            for t in [0.0, 0.1, 0.8] {
+                let answer = case.solve(&[("f", f), ("N", n), ("P", 0.0), ("T", t)]);
+                is_answer(&answer);
+                let pair = |id: &str| answer.pairs.iter().find(|pair| pair.id == id).expect("a pair");
+                near("near", pair("near").x_n, n, 1e-9, 1.0);
+                near("far", pair("far").x_n, 0.0, 1e-9, 1.0);
+                near("open", pair("far").z_n, g1, 1e-9, g1);
+                near("slip", pair("near").slip()[0], (t - f * n).max(0.0) / k_a, 1e-9, 1.0 / k_a);
+                near("friction", pair("near").friction()[0], -t.min(f * n), 1e-9, 1.0);
+            }
+        }
+    }
+}
+
 /// A shoe under N between guides: the tip slips aside by g1 and along by u, where
 ///
 /// ```text
