@@ -43,6 +43,6 @@ fn two_guides_under_a_cyclic_pull() {
         }
         let begins = found.stages[3].moments.iter().find(|moment| !moment.changes.is_empty()).expect("a slip");
         // Events are crossed in steps of 1e-7 of a stage, in which T goes by 1/2.
-        near("reversal", begins.factors[2], k_a * s - r, 1e-6, 1.0);
+        near("reversal", begins.factors[2], k_a * s - r, 1e-7, 1.0);
     }
 }
