@@ -387,6 +387,8 @@ mod tests {
             assert!(rest.is_empty(), "{text}");
             assert_eq!(quantity.to_string(), text);
         }
+        // σ_xy = σ_yx: what is read is one quantity.
+        assert_eq!(read(&words("syx B"), &names).unwrap().0, read(&words("sxy B"), &names).unwrap().0);
         assert_eq!(read(&words("\"nozzle moment\" < 20"), &names).unwrap().1, ["<", "20"]);
         assert_eq!(read(&words("count open = 3"), &names).unwrap().1, ["=", "3"]);
     }

@@ -331,6 +331,8 @@ impl Meaning {
 pub struct Word {
     /// As written.
     pub word: &'static str,
+    /// The other way in which it may be written: a shear stress has its letters in either order.
+    pub also: Option<&'static str>,
     /// What it means.
     pub meaning: Meaning,
     /// Its dimension.
@@ -352,11 +354,15 @@ impl Word {
 }
 
 const fn number(word: &'static str, meaning: Meaning, dimension: Dimension, about: &'static str) -> Word {
-    Word { word, meaning, dimension, about, choices: &[] }
+    Word { word, also: None, meaning, dimension, about, choices: &[] }
+}
+
+const fn shear(word: &'static str, also: &'static str, which: OfStress, about: &'static str) -> Word {
+    Word { also: Some(also), ..number(word, Meaning::Stress(which), Dimension::Stress, about) }
 }
 
 const fn chosen(word: &'static str, meaning: Meaning, choices: &'static [&'static str], about: &'static str) -> Word {
-    Word { word, meaning, dimension: Dimension::None, about, choices }
+    Word { word, also: None, meaning, dimension: Dimension::None, about, choices }
 }
 
 /// The states of pairs.
@@ -448,9 +454,9 @@ pub static WORDS: &[Word] = &[
     number("sx", M::Stress(OfStress::X), D::Stress, "stress along x"),
     number("sy", M::Stress(OfStress::Y), D::Stress, "stress along y"),
     number("sz", M::Stress(OfStress::Z), D::Stress, "stress along z, in space"),
-    number("sxy", M::Stress(OfStress::Xy), D::Stress, "shear stress"),
-    number("syz", M::Stress(OfStress::Yz), D::Stress, "shear stress, in space"),
-    number("sxz", M::Stress(OfStress::Xz), D::Stress, "shear stress, in space"),
+    shear("sxy", "syx", OfStress::Xy, "shear stress (also syx)"),
+    shear("syz", "szy", OfStress::Yz, "shear stress, in space (also szy)"),
+    shear("sxz", "szx", OfStress::Xz, "shear stress, in space (also szx)"),
     number("s1", M::Stress(OfStress::First), D::Stress, "largest principal stress (in the plane of the two there)"),
     number("s2", M::Stress(OfStress::Second), D::Stress, "second principal stress"),
     number("s3", M::Stress(OfStress::Third), D::Stress, "third principal stress, in space"),
@@ -468,7 +474,7 @@ pub fn words_of(dimension: structure::Dimension) -> impl Iterator<Item = &'stati
 
 /// The table entry of a word.
 pub fn entry(word: &str) -> Option<&'static Word> {
-    WORDS.iter().find(|known| known.word == word)
+    WORDS.iter().find(|known| known.word == word || known.also == Some(word))
 }
 
 /// The words for the numbers of a pair in the plane, or in space.
