@@ -16,7 +16,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use crate::contact::system::ContactSystem;
-use crate::fem::{Kinematics, mutual_displacements};
+use crate::fem::{HeldForces, Kinematics, mutual_displacements};
 use crate::model::pair::{Pair, joints};
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::plausible::Warning;
@@ -30,7 +30,8 @@ use crate::text::words::list;
 const ROUNDING: f64 = 1e4 * f64::EPSILON;
 /// R_ij is zero below this part of √(R_ii R_jj).
 const UNCOUPLED: f64 = 1e-9;
-/// Loads work against a motion where no rounding can have made it so: by this share of the terms of their work.
+/// Loads work against a motion, or press a pair, where no rounding can have made it so: by this share of the terms of their
+/// work, of the largest of their forces.
 const CLEARLY: f64 = 1e-6;
 /// A joint is at rest in a motion that moves it by less than this share of the largest: rounding of the coordinates.
 const STILL: f64 = 1e-12;
@@ -56,10 +57,8 @@ impl Effect {
 
 /// A warning for the contacts none of whose pairs is pressed.
 pub fn unpressed(scenario: &Scenario, system: &ContactSystem) -> Vec<Warning> {
-    let values = scenario.parameter_values();
-    let signs: Vec<[bool; 2]> =
-        factors(scenario).map(|(name, factor)| signs(scenario, name, factor, &values)).collect();
-    let gaps = interference(system, &values);
+    let signs = signs_of_cases(scenario);
+    let gaps = interference(system, &scenario.parameter_values());
     let coupled = coupled(system);
     let effects: Vec<Effect> =
         (0..system.pair_count()).map(|pair| effect(system, &signs, &gaps, &coupled, pair)).collect();
@@ -101,9 +100,7 @@ pub fn surely_pressed(scenario: &Scenario, structure: &Structure, kinematics: &K
     if motions.len() > MANY || contacts.len() > MANY || motions.is_empty() {
         return contacts.is_empty();
     }
-    let values = scenario.parameter_values();
-    let signs: Vec<[bool; 2]> =
-        factors(scenario).map(|(name, factor)| signs(scenario, name, factor, &values)).collect();
+    let signs = signs_of_cases(scenario);
     let joints = joints(&structure.pairs);
     let traces: Vec<DVector<f64>> = motions.iter().map(|motion| mutual_displacements(&joints, &motion.u)).collect();
     let traces = DMatrix::from_columns(&traces);
@@ -123,6 +120,20 @@ pub fn surely_pressed(scenario: &Scenario, structure: &Structure, kinematics: &K
         };
         works.iter().zip(&signs).any(|(works, signs)| against(works, *signs))
     })
+}
+
+/// Whether every contact is clearly pressed by a load case while all joints hold, by forces without R; `false` may mean
+/// anything.
+pub fn clearly_pressed(scenario: &Scenario, structure: &Structure, held: &[HeldForces]) -> bool {
+    let signs = signs_of_cases(scenario);
+    let is_pressed = |pair: usize| {
+        let by_case = |(case, [plus, minus]): (&HeldForces, &[bool; 2])| {
+            let (force, clear) = (case.forces[pair], CLEARLY * case.size);
+            *plus && force > clear || *minus && force < -clear
+        };
+        structure.pairs[pair].law.is_bilateral() || held.iter().zip(&signs).any(by_case)
+    };
+    contacts(scenario).into_iter().all(|mut pairs| pairs.any(is_pressed))
 }
 
 /// Amounts of the motions that together open a contact and move no other joint, nor this one along itself; normal joints
@@ -258,6 +269,12 @@ fn factors(scenario: &Scenario) -> Box<dyn Iterator<Item = (&str, &Number)> + '_
         Source::ContactSystem(system) => Box::new(system.loads.iter().map(|case| (case.name.as_str(), &case.factor))),
         Source::Lcp(_) => Box::new(std::iter::empty()),
     }
+}
+
+/// [`signs`] of every load case.
+fn signs_of_cases(scenario: &Scenario) -> Vec<[bool; 2]> {
+    let values = scenario.parameter_values();
+    factors(scenario).map(|(name, factor)| signs(scenario, name, factor, &values)).collect()
 }
 
 /// Whether a case may act with a positive and with a negative factor: under the values of the file, its multipliers in

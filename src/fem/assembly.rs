@@ -110,15 +110,8 @@ pub struct MainMatrices {
     pub d: DMatrix<f64>,
 }
 
-/// Splits K by u = T v + G z.
-pub fn main_matrices(k: &SymmetricSparse, elimination: &Elimination) -> MainMatrices {
-    let each_entry = |visit: &mut dyn FnMut(usize, usize, f64)| {
-        for column in 0..k.order() {
-            for (row, value) in k.column(column) {
-                visit(row, column, value);
-            }
-        }
-    };
+/// K_m = Tᵀ K T.
+pub fn main_stiffness(k: &SymmetricSparse, elimination: &Elimination) -> SymmetricSparse {
     // The terms of K_m that one entry of the lower triangle of K gives.
     let terms = |i: usize, j: usize, value: f64, push: &mut dyn FnMut(usize, usize, f64)| {
         if let (Some(a), Some(b)) = (elimination.single(i), elimination.single(j)) {
@@ -142,19 +135,33 @@ pub fn main_matrices(k: &SymmetricSparse, elimination: &Elimination) -> MainMatr
         elimination.masters(),
         |count| {
             (0..elimination.masters()).for_each(&mut *count);
-            each_entry(&mut |i, j, value| terms(i, j, value, &mut |_, column, _| count(column)));
+            each_entry(k, |i, j, value| terms(i, j, value, &mut |_, column, _| count(column)));
         },
         |push| {
             (0..elimination.masters()).for_each(|v| push(v, v, 0.0));
-            each_entry(&mut |i, j, value| terms(i, j, value, &mut *push));
+            each_entry(k, |i, j, value| terms(i, j, value, &mut *push));
             Ok(())
         },
     );
     let Ok(k_m) = k_m;
+    k_m
+}
 
+/// Visits the entries of the lower triangle, column by column.
+fn each_entry(k: &SymmetricSparse, mut visit: impl FnMut(usize, usize, f64)) {
+    for column in 0..k.order() {
+        for (row, value) in k.column(column) {
+            visit(row, column, value);
+        }
+    }
+}
+
+/// Splits K by u = T v + G z.
+pub fn main_matrices(k: &SymmetricSparse, elimination: &Elimination) -> MainMatrices {
+    let k_m = main_stiffness(k, elimination);
     let mut c = Vec::new();
     let mut d = DMatrix::zeros(elimination.joints(), elimination.joints());
-    each_entry(&mut |i, j, value| {
+    each_entry(k, |i, j, value| {
         let mut directed = |i: usize, j: usize| {
             for (joint, g) in elimination.joint_terms(j) {
                 for (v, t) in elimination.free_terms(i) {

@@ -12,6 +12,7 @@ use super::kernel::{self, RigidKernel};
 use super::loose::Motion;
 use super::main_system::MainSystem;
 use super::refinement::Verdict;
+use super::sparse::SymmetricSparse;
 use crate::doubled::Real;
 use crate::model::structure::Structure;
 use crate::model::vector::length;
@@ -44,9 +45,7 @@ impl MainSystem {
     /// may bend the whole structure where those of the joints do not.
     pub(super) fn refine_if_lost(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
         self.amplification = self.worst_amplification();
-        // Each term of uᵀ K u is off by ε at random, and there are as many as unknowns.
-        let terms = (self.elimination.masters().max(1) as f64).sqrt();
-        if f64::EPSILON * self.amplification / terms <= MOST_LOSS {
+        if !loses(self.amplification, self.elimination.masters()) {
             return Ok(());
         }
         if !self.stiffness_is_right(structure, watch)? {
@@ -125,12 +124,7 @@ impl MainSystem {
             factors[case] = 1.0;
             fields.push(self.plain_displacements(&factors, &DVector::zeros(k)));
         }
-        let amplification = |u: &Vec<f64>| {
-            let terms = dot(&self.k.times_absolute(u), &u.iter().map(|u| u.abs()).collect::<Vec<_>>());
-            let energy = dot(&self.k.times(u), u).max(f64::EPSILON * terms);
-            if terms > 0.0 { terms / energy } else { 0.0 }
-        };
-        fields.iter().map(amplification).fold(0.0, f64::max)
+        fields.iter().map(|u| amplification(&self.k, u, &self.k.times(u))).fold(0.0, f64::max)
     }
 
     /// Adds eigenvectors of R that cost no energy in K to the kernel.
@@ -191,6 +185,19 @@ impl MainSystem {
         self.coefficients = coefficients;
         self.z = extended;
     }
+}
+
+/// Whether rounding that is amplified so may cost too much of the energy of a field of so many unknowns.
+pub(super) fn loses(amplification: f64, unknowns: usize) -> bool {
+    // Each term of uᵀ K u is off by ε at random, and there are as many as unknowns.
+    f64::EPSILON * amplification / (unknowns.max(1) as f64).sqrt() > MOST_LOSS
+}
+
+/// Σ|u||K||u| over uᵀ K u for displacements u and the forces K u.
+pub(super) fn amplification(k: &SymmetricSparse, u: &[f64], forces: &[f64]) -> f64 {
+    let terms: f64 = std::iter::zip(k.times_absolute(u), u).map(|(terms, u)| terms * u.abs()).sum();
+    let energy = dot(forces, u).max(f64::EPSILON * terms);
+    if terms > 0.0 { terms / energy } else { 0.0 }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

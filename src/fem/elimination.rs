@@ -185,6 +185,15 @@ impl Elimination {
         self.masters
     }
 
+    /// A node of each unknown of v.
+    pub fn nodes(&self, dofs: &Dofs) -> Vec<u32> {
+        let mut node = vec![0; self.masters];
+        for (dof, at) in dofs.nodes().enumerate() {
+            self.free_terms(dof).for_each(|(master, _)| node[master] = at as u32);
+        }
+        node
+    }
+
     /// Length of z.
     pub fn joints(&self) -> usize {
         self.joints

@@ -43,6 +43,10 @@ impl Kinematics {
         Ok(Kinematics { outline, motions, complete })
     }
 
+    pub(super) fn outline(&self) -> &Outline {
+        &self.outline
+    }
+
     /// Motions that cost nothing, as far as they are seen from the parts.
     pub fn motions(&self) -> &[Motion] {
         &self.motions

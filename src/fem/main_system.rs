@@ -126,12 +126,7 @@ impl MainSystem {
                 }
             }
         }
-        let mut node = vec![0; elimination.masters()];
-        for (dof, at) in dofs.nodes().enumerate() {
-            for (master, _) in elimination.free_terms(dof) {
-                node[master] = at as u32;
-            }
-        }
+        let node = elimination.nodes(&dofs);
         let coordinates: Vec<[f64; 3]> = structure.nodes.iter().map(|node| node.position).collect();
         let places = Places { node: &node, coordinates: &coordinates, last: &last };
         let factor = Factor::new(&mut main.k_m, &main.c, places, joints.len(), watch)?;
@@ -278,14 +273,7 @@ impl MainSystem {
 
     /// Largest nodal force or joint force of each load case per unit factor: what rounding in its RF is measured by.
     pub fn load_sizes(&self) -> Vec<f64> {
-        let rotation = self.dofs.is_rotation();
-        std::iter::zip(self.driving_forces(), &self.rf)
-            .map(|(f, rf)| {
-                let nodal =
-                    std::iter::zip(f.iter(), &rotation).filter(|(_, rotation)| !**rotation).map(|(f, _)| f.abs());
-                nodal.fold(rf.amax(), f64::max)
-            })
-            .collect()
+        std::iter::zip(self.driving_forces(), &self.rf).map(|(f, rf)| largest_force(&self.dofs, &f, rf)).collect()
     }
 
     /// Numbers of unknowns.
@@ -302,4 +290,10 @@ impl MainSystem {
     pub fn factor_entries(&self) -> usize {
         self.factor.stored()
     }
+}
+
+/// Largest nodal force of driving forces f, or joint force of the RF that they give.
+pub(super) fn largest_force(dofs: &Dofs, f: &[f64], rf: &DVector<f64>) -> f64 {
+    let nodal = std::iter::zip(f, dofs.is_rotation()).filter(|(_, rotation)| !rotation).map(|(f, _)| f.abs());
+    nodal.fold(rf.amax(), f64::max)
 }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::prepared::{PrepareError, main_system_problem, prepare};
 use crate::explain::loose::{LoosePart, loose_parts};
-use crate::explain::unpressed::surely_pressed;
+use crate::explain::unpressed::{clearly_pressed, surely_pressed};
 use crate::fem::Kinematics;
 use crate::model::pair::joints;
 use crate::model::plausible;
@@ -30,9 +30,10 @@ pub struct Looked {
     pub left_out: Option<String>,
 }
 
-/// Looks at a scenario under the values of its file. Large structures are judged by the motions of their parts; only
-/// where those leave open whether something moves in itself, or whether the loads press every contact, the main system
-/// is factorized, for [`LOOK_TIME`] at most.
+/// Looks at a scenario under the values of its file. Large structures are judged by the motions of their parts. Where those
+/// leave open whether the loads press every contact, the forces of the held joints mostly decide it, for which R is not
+/// needed; only where they do not, or where something may move in itself, the main system is condensed. All this for
+/// [`LOOK_TIME`] at most.
 ///
 /// # Errors
 /// As [`prepare`], except for what was left out.
@@ -52,6 +53,12 @@ fn look_within(time: Duration, scenario: &Scenario, watch: &dyn Watch) -> Result
         return Ok(by_parts(scenario, structure, &kinematics, None));
     }
     let budget = Budget::new(watch, time);
+    if kinematics.is_complete()
+        && let Ok(Some(held)) = kinematics.held_forces(structure, &budget)
+        && clearly_pressed(scenario, structure, &held)
+    {
+        return Ok(by_parts(scenario, structure, &kinematics, None));
+    }
     match by_numbers(scenario, &budget) {
         Err(PrepareError::Interrupted) if budget.ran_out() => {
             let left_out = format!(

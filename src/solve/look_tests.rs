@@ -66,6 +66,28 @@ fn parts_tell_what_the_numbers_tell() {
     }
 }
 
+/// The upper slab is held along its left side in both directions, so that nothing is free and no motion tells whether the
+/// contact is pressed; RF of the factor without R against RF as it is condensed.
+#[test]
+fn forces_of_the_held_joints_are_those_of_the_condensed_system() {
+    for (traction, factor, pressed) in [([0.5, -1.0], 1.0, true), ([0.5, -1.0], -1.0, false), ([0.5, 0.0], 1.0, true)] {
+        let text = stack(2, 26, 1, traction, factor).text.replace(r#""fixed":["x"]"#, r#""fixed":["x","y"]"#);
+        let scenario = load_text("slabs", &text, None).unwrap_or_else(|problems| panic!("{problems}"));
+        assert!(!is_decided_by_parts(&scenario));
+        let Source::Structure(structure) = &scenario.source else { panic!("a structure") };
+        let kinematics = Kinematics::new(structure, &joints(&structure.pairs), &Quiet).unwrap();
+        let held = kinematics.held_forces(structure, &Quiet).unwrap().expect("no joint repeats another");
+        let prepared = prepare(&scenario, &Quiet).unwrap();
+        let case = &prepared.system().unwrap().loads[0];
+        // Two ways through two factors.
+        let rounding = 1e-11 * held[0].size;
+        assert!(held[0].size >= case.vector.amax() - rounding && (&held[0].forces - &case.vector).amax() <= rounding);
+        assert_eq!(clearly_pressed(&scenario, structure, &held), pressed, "{traction:?} {factor}");
+        let (seen, expected) = (look_within(LONG, &scenario, &Quiet).unwrap(), by_numbers(&scenario, &Quiet).unwrap());
+        assert_eq!((&seen.loose, &seen.warnings), (&expected.loose, &expected.warnings), "{traction:?} {factor}");
+    }
+}
+
 #[test]
 fn a_structure_that_cannot_stand_is_refused_without_numbers() {
     let mut scenario = stack(2, 26, 0, [0.0, -1.0], 1.0);

@@ -35,14 +35,15 @@ pub fn gradients_in_space<T: Real>(at: [f64; 3], centre: &SpaceJacobian<T>, dete
     })
 }
 
-/// Eliminates `rows`, the last one first; each keeps its entries as they are when its turn comes.
+/// Eliminates `rows` of a symmetric k, the last one first; each keeps its entries as they are when its turn comes.
 pub fn eliminate<T: Real>(k: &mut Stiffness<T>, rows: Range<usize>) {
     for row in rows.rev() {
         let pivot = k[(row, row)];
         for i in 0..row {
-            for j in 0..row {
-                let product = k[(i, row)] * k[(row, j)] / pivot;
-                k[(i, j)] -= product;
+            for j in 0..=i {
+                let entry = k[(i, j)] - k[(i, row)] * k[(row, j)] / pivot;
+                k[(i, j)] = entry;
+                k[(j, i)] = entry;
             }
         }
     }

@@ -62,7 +62,7 @@ impl Membrane<'_> {
     /// The same with the rows of the incompatible modes after those of the nodes, each as it was when it was eliminated
     /// (the last one first).
     fn stiffness_of_all<T: Real>(&self) -> Option<Stiffness<T>> {
-        if self.shape().nodes().iter().any(|&at| self.gradients::<f64>(at).1 <= 0.0) {
+        if self.shape().nodes().iter().any(|&at| determinant(&self.jacobian::<f64>(at)) <= 0.0) {
             return None;
         }
         let d = elasticity(self.material, self.plane);
@@ -176,7 +176,10 @@ impl Membrane<'_> {
     fn gradients<T: Real>(&self, at: [f64; 2]) -> ([[T; 2]; MOST], T) {
         let j = self.jacobian::<T>(at);
         let det = determinant(&j);
-        let mut gradients = self.shape().gradients(at).map(|natural| in_plane(&j, det, natural));
+        let mut gradients = self.shape().gradients(at);
+        for natural in &mut gradients[..self.nodes.len()] {
+            *natural = in_plane(&j, det, *natural);
+        }
         if self.incompatible {
             let centre = self.jacobian::<T>(self.shape().centre());
             let modes = incompatible::gradients(at, &centre, determinant(&centre) / det);

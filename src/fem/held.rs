@@ -1,0 +1,76 @@
+//! What the loads do to the joints while every joint holds, without R: a factorization of K_m alone and a solution for each
+//! load case. It is what RF is, and costs a part of it.
+
+use nalgebra::DVector;
+
+use super::assembly::{assemble, main_stiffness, on_joints, on_masters};
+use super::condense::{amplification, loses};
+use super::error::MainSystemError;
+use super::factor::Factor;
+use super::kinematics::Kinematics;
+use super::main_system::largest_force;
+use super::order::Places;
+use super::outline::Outline;
+use crate::model::structure::Structure;
+use crate::watch::Watch;
+
+/// The joint forces of a load case per unit factor.
+pub struct HeldForces {
+    /// RF, in the order of the joints: x_n > 0 presses.
+    pub forces: DVector<f64>,
+    /// Largest nodal force or joint force of the case: what rounding in RF is measured by.
+    pub size: f64,
+}
+
+impl Kinematics {
+    /// RF of every load case; `None` where joints repeat others, or where f64 may lose too much of it to rounding.
+    ///
+    /// # Errors
+    /// An element without shape; too large; out of memory; interrupted.
+    pub fn held_forces(
+        &self,
+        structure: &Structure,
+        watch: &dyn Watch,
+    ) -> Result<Option<Vec<HeldForces>>, MainSystemError> {
+        let Outline { dofs, elimination, repeated, f, settled, .. } = self.outline();
+        if !repeated.is_empty() {
+            return Ok(None);
+        }
+        let k = assemble(structure, dofs, &|| watch.stop())?;
+        let coordinates: Vec<[f64; 3]> = structure.nodes.iter().map(|node| node.position).collect();
+        let node = elimination.nodes(dofs);
+        let places = Places { node: &node, coordinates: &coordinates, last: &vec![false; node.len()] };
+        let factor = Factor::new(&mut main_stiffness(&k, elimination), &[], places, 0, watch)?;
+        if factor.is_shifted() {
+            return Ok(None);
+        }
+        let closed = vec![0.0; elimination.joints()];
+        let mut held = Vec::with_capacity(f.len());
+        for (f, settled) in std::iter::zip(f, settled) {
+            let settled = settled.as_deref();
+            let mut driving = f.clone();
+            for (driving, k) in
+                std::iter::zip(&mut driving, settled.map(|settled| k.times(settled)).unwrap_or_default())
+            {
+                *driving -= k;
+            }
+            let mut v = on_masters(elimination, &driving);
+            factor.solve(&mut v);
+            let mut u = elimination.expand(&v, &closed);
+            for (u, settled) in std::iter::zip(&mut u, settled.unwrap_or_default()) {
+                *u += settled;
+            }
+            let mut nodal = k.times(&u);
+            if loses(amplification(&k, &u, &nodal), elimination.masters()) {
+                return Ok(None);
+            }
+            for (nodal, f) in std::iter::zip(&mut nodal, f) {
+                *nodal -= f;
+            }
+            let forces = DVector::from_vec(on_joints(elimination, &nodal));
+            let size = largest_force(dofs, &driving, &forces);
+            held.push(HeldForces { forces, size });
+        }
+        Ok(Some(held))
+    }
+}
