@@ -30,8 +30,8 @@ use crate::text::words::list;
 const ROUNDING: f64 = 1e4 * f64::EPSILON;
 /// R_ij is zero below this part of √(R_ii R_jj).
 const UNCOUPLED: f64 = 1e-9;
-/// Loads work against a motion, or press a pair, where no rounding can have made it so: by this share of the terms of their
-/// work, of the largest of their forces.
+/// Loads work against a motion, or press a pair, where no rounding can have made it so: by this share of the terms of
+/// their work, of the largest of their forces.
 const CLEARLY: f64 = 1e-6;
 /// A joint is at rest in a motion that moves it by less than this share of the largest: rounding of the coordinates.
 const STILL: f64 = 1e-12;

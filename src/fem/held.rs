@@ -1,5 +1,5 @@
-//! What the loads do to the joints while every joint holds, without R: a factorization of K_m alone and a solution for each
-//! load case. It is what RF is, and costs a part of it.
+//! What the loads do to the joints while every joint holds, without R: a factorization of K_m alone and a solution for
+//! each load case. It is what RF is, and costs a part of it.
 
 use nalgebra::DVector;
 

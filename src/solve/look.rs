@@ -30,10 +30,10 @@ pub struct Looked {
     pub left_out: Option<String>,
 }
 
-/// Looks at a scenario under the values of its file. Large structures are judged by the motions of their parts. Where those
-/// leave open whether the loads press every contact, the forces of the held joints mostly decide it, for which R is not
-/// needed; only where they do not, or where something may move in itself, the main system is condensed. All this for
-/// [`LOOK_TIME`] at most.
+/// Looks at a scenario under the values of its file. Large structures are judged by the motions of their parts. Where
+/// those leave open whether the loads press every contact, the forces of the held joints mostly decide it, for which R
+/// is not needed; only where they do not, or where something may move in itself, the main system is condensed. All this
+/// for [`LOOK_TIME`] at most.
 ///
 /// # Errors
 /// As [`prepare`], except for what was left out.
