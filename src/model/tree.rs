@@ -173,6 +173,16 @@ impl<'d> Node<'d> {
         self.tree.cells[self.at as usize]
     }
 
+    /// Its number among the values and keys of the text.
+    pub fn number(self) -> u32 {
+        self.at
+    }
+
+    /// The value or key of a [`number`](Node::number).
+    pub fn numbered(self, number: u32) -> Node<'d> {
+        Node { at: number, ..self }
+    }
+
     pub fn kind(self) -> Kind {
         self.cell().kind
     }

@@ -214,7 +214,7 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: &Arc<st
             let t = inner as f64 / bar.divisions as f64;
             let id = format!("{}/{}", bar.id, chain.len());
             let position = std::array::from_fn(|c| from[c] + t * (to[c] - from[c]));
-            chain.push(builder.add_node(id.into(), position));
+            chain.push(builder.add_node(id, position));
         }
         chain.push(ends[1]);
     }

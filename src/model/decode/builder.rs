@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::mesh_names::MeshPart;
+use super::name_table::NameTable;
 use super::reader::{Cursor, Fields, Place};
 use super::words::{ID_RULE, is_id, quoted};
 use crate::model::bar_axes::BarAxes;
@@ -14,6 +15,9 @@ use crate::model::space_section::SpaceSection;
 use crate::model::structure::{Component, ElementKind, Node, Structure};
 use crate::model::superelement::Superelement;
 use crate::model::vector::{distance, way};
+
+/// What an id of a node names.
+const NODE: &str = "node";
 
 /// Cross-section of bars.
 pub struct Section {
@@ -80,12 +84,14 @@ pub struct Builder<'d> {
     /// Triangles and quads by their ids.
     pub single_elements: HashMap<&'d str, usize>,
     /// Nodes of the author and of bar divisions; those of plates and meshes are found by their indices.
-    pub nodes: HashMap<Cow<'d, str>, usize>,
-    /// Every id and what it names.
+    nodes: NameTable,
+    /// Every id but those of nodes, and what it names.
     ids: HashMap<&'d str, &'static str>,
     /// Names whose definition is wrong: reported there, not again where they are used.
     pub broken: HashSet<&'d str>,
     pub ends_of_broken_bars: Vec<Cursor<'d>>,
+    /// The object of the author's nodes.
+    pub listed_nodes: Option<Cursor<'d>>,
     /// Whether `nodes` could not be read at all: unknown nodes are then not reported.
     pub nodes_are_unknown: bool,
     /// Imposed displacements of supports, until their load cases are known.
@@ -103,7 +109,7 @@ impl<'d> Builder<'d> {
     pub fn register(&mut self, place: Place<'d>, id: &'d str, kind: &'static str) {
         if !is_id(id) {
             place.problem(format!("{} cannot be an id", quoted(id)), ID_RULE);
-        } else if let Some(first) = self.ids.insert(id, kind) {
+        } else if let Some(first) = self.named(id, kind) {
             place.problem(
                 format!("duplicate id {}: a {first} has it already", quoted(id)),
                 "nodes, elements, edges and contacts share one set of ids: rename one of the two",
@@ -111,12 +117,31 @@ impl<'d> Builder<'d> {
         }
     }
 
+    /// What had an id before; from now on it names this kind. A node is known by its own table, once it is added.
+    fn named(&mut self, id: &'d str, kind: &'static str) -> Option<&'static str> {
+        let node = self.node_named(id).map(|_| NODE);
+        let other = if kind == NODE { self.ids.get(id).copied() } else { self.ids.insert(id, kind) };
+        node.or(other)
+    }
+
     /// Appends a node that can be named.
-    pub fn add_node(&mut self, id: Cow<'d, str>, position: [f64; 3]) -> usize {
-        let index = self.structure.nodes.len();
-        self.structure.nodes.push(Node { id: id.to_string(), position });
-        self.nodes.insert(id, index);
+    pub fn add_node(&mut self, id: String, position: [f64; 3]) -> usize {
+        let nodes = &mut self.structure.nodes;
+        let index = nodes.len();
+        nodes.push(Node { id, position });
+        // A later one of the same name is reported where it stands.
+        let _ = self.nodes.insert(index as u32, |node| &nodes[node as usize].id);
         index
+    }
+
+    /// The node of a name.
+    pub fn node_named(&self, name: &str) -> Option<usize> {
+        self.nodes.get(name, |node| &self.structure.nodes[node as usize].id).map(|node| node as usize)
+    }
+
+    /// The names of all nodes that have one.
+    pub fn node_names(&self) -> impl Iterator<Item = &str> {
+        self.nodes.numbers().map(|node| self.structure.nodes[node as usize].id.as_str())
     }
 
     /// The nodes since the last call come from the entry at a path, or each from its own in the list there.
@@ -132,22 +157,23 @@ impl<'d> Builder<'d> {
         &self.structure.nodes[node].id
     }
 
-    /// Adds the nodes of the file, which stand at the path `within`; the places of their names.
-    pub fn add_nodes(&mut self, nodes: Option<Cursor<'d>>, within: &str) -> Vec<Place<'d>> {
-        let entries = nodes.and_then(Cursor::entries);
+    /// Adds the nodes of the file, which stand at the path `within`.
+    pub fn add_nodes(&mut self, nodes: Option<Cursor<'d>>, within: &str) {
+        let entries = nodes.and_then(Cursor::each_entry);
+        self.listed_nodes = nodes;
         self.nodes_are_unknown = nodes.is_some() && entries.is_none();
-        let entries = entries.unwrap_or_default();
-        let mut names = Vec::with_capacity(entries.len());
-        self.structure.nodes.reserve_exact(entries.len());
-        for entry in entries {
-            self.register(entry.key_place(), entry.name(), "node");
-            // A node without a usable place stays known, with a place that no geometric check complains about.
-            let position = entry.value().vector().unwrap_or([f64::NAN; 3]);
-            names.push(entry.key_place());
-            self.add_node(entry.name().into(), position);
+        if let Some(entries) = entries {
+            let count = entries.size_hint().1.unwrap_or_default();
+            self.structure.nodes.reserve_exact(count);
+            self.nodes = NameTable::with_capacity(count);
+            for entry in entries {
+                self.register(entry.key_place(), entry.name(), NODE);
+                // A node without a usable place stays known, with a place that no geometric check complains about.
+                let position = entry.value().vector().unwrap_or([f64::NAN; 3]);
+                self.add_node(entry.name().to_owned(), position);
+            }
         }
         self.place_nodes(within, true);
-        names
     }
 
     /// The elements of a bar with their places along it.

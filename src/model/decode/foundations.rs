@@ -200,7 +200,7 @@ fn bonded(builder: &mut Builder<'_>, foundation: &Foundation<'_>, at: &Place) {
 fn tensionless(builder: &mut Builder<'_>, foundation: &Foundation<'_>, index: usize, at: &Place, place: &str) {
     let id = format!("{}[{index}]", foundation.id);
     let position = builder.structure.nodes[at.node].position;
-    let ground = builder.add_node(format!("{}/{index}", foundation.id).into(), position);
+    let ground = builder.add_node(format!("{}/{index}", foundation.id), position);
     builder.place_nodes(place, false);
     builder.has_rotation.push(false);
     builder.structure.yielding_ground.push(ground);

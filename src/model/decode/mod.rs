@@ -20,6 +20,7 @@ mod measured;
 mod mesh_elements;
 mod mesh_names;
 mod meshes;
+mod name_table;
 mod names;
 mod numbers;
 mod parameters;

@@ -17,7 +17,7 @@ impl<'d> Builder<'d> {
     /// The node or edge that a string names.
     pub fn spot(&self, cursor: Cursor<'d>) -> Option<Spot> {
         let name = cursor.string()?;
-        if let Some(&node) = self.nodes.get(name) {
+        if let Some(node) = self.node_named(name) {
             return Some(Spot::Node(node));
         }
         if let Some(edge) = self.edges.get(name) {
@@ -193,7 +193,7 @@ impl<'d> Builder<'d> {
             cursor.problem(format!("the bar \"{id}\" has no node {}", quoted(name)), help);
             return;
         }
-        let hint = did_you_mean(name, self.nodes.keys().map(AsRef::as_ref));
+        let hint = did_you_mean(name, self.node_names());
         let help = if hint.is_empty() {
             match self.structure.dimension {
                 Dimension::Plane => {

@@ -4,12 +4,13 @@
 //! place; the caller leaves the part out and reads on.
 
 use std::cell::{Cell, OnceCell, RefCell};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::PathBuf;
 
 use super::declared::Parameters;
 pub use super::findings::{Findings, Place};
+use super::name_table::NameTable;
 use super::words::shortened;
 use super::words::{counted, did_you_mean, listed, quoted};
 use crate::model::dimension::Dimension;
@@ -17,6 +18,9 @@ use crate::model::locate::Document;
 use crate::model::mesh::MeshFiles;
 use crate::model::tree::{Kind, Node};
 use crate::model::uses::Region;
+
+/// Up to so many keys are compared with one another, one by one.
+const FEW: usize = 16;
 
 /// What one reading of a text collects, besides what it returns.
 #[derive(Default)]
@@ -187,25 +191,38 @@ impl<'d> Cursor<'d> {
 
     /// The entries of an object as a map from names the author chose; a repeated name is reported.
     pub fn entries(self) -> Option<Vec<Entry<'d>>> {
+        Some(self.each_entry()?.collect())
+    }
+
+    /// The same one by one, for very many.
+    pub fn each_entry(self) -> Option<impl Iterator<Item = Entry<'d>>> {
         if !self.is_object() {
             self.wrong_type("an object { … }", "write \"key\": value entries in { … }");
             return None;
         }
         let properties = self.value.properties();
-        let mut seen = HashSet::with_capacity(properties.len());
-        let mut entries = Vec::with_capacity(properties.len());
-        for (key, _) in properties {
+        let mut seen = (properties.len() > FEW).then(|| NameTable::with_capacity(properties.len()));
+        Some(properties.enumerate().filter_map(move |(before, (key, _))| {
             let entry = Entry { key, cursor: self };
-            if !seen.insert(entry.name()) {
+            let is_new = match &mut seen {
+                Some(seen) => {
+                    seen.insert(key.number(), |number| key.numbered(number).as_str().unwrap_or_default()).is_none()
+                }
+                None => self.value.properties().take(before).all(|(other, _)| other.as_str() != key.as_str()),
+            };
+            if !is_new {
                 entry.key_problem(
                     format!("the key {} appears twice in this object", quoted(entry.name())),
                     "remove or rename one of the two",
                 );
-            } else {
-                entries.push(entry);
             }
-        }
-        Some(entries)
+            is_new.then_some(entry)
+        }))
+    }
+
+    /// The places of the keys of an object.
+    pub fn key_places(self) -> impl Iterator<Item = Place<'d>> {
+        self.value.properties().map(move |(key, _)| Place { offset: key.start(), findings: &self.reading.findings })
     }
 
     /// The entries of an object with fixed keys; any other key is reported.

@@ -72,7 +72,7 @@ pub fn is_geometry(cursor: Cursor<'_>) -> bool {
 }
 
 pub fn is_misspelt_ground(builder: &Builder<'_>, word: &str) -> bool {
-    !builder.nodes.contains_key(word) && !near(word, [GROUND]).is_empty()
+    builder.node_named(word).is_none() && !near(word, [GROUND]).is_empty()
 }
 
 /// The sides of one node against another one or the ground.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::builder::Builder;
-use super::reader::{Fields, Place};
+use super::reader::{Cursor, Fields};
 use super::{contacts, edges, elements, foundations, loads, rigid, springs, superelement, supports, ties};
 use crate::model::scenario::Places;
 use crate::model::space_section::EndJoint;
@@ -61,17 +61,16 @@ pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
     }
     let mut builder = Builder::default();
     builder.structure.dimension = fields.cursor().dimension();
-    let names = match fields.optional("superelement") {
+    match fields.optional("superelement") {
         Some(at) => {
             refuse_elements(fields);
             superelement::read(&mut builder, at, path)?
         }
         None => {
-            let names = builder.add_nodes(fields.optional("nodes"), "nodes");
+            builder.add_nodes(fields.optional("nodes"), "nodes");
             elements::read(&mut builder, fields)?;
-            names
         }
-    };
+    }
     builder.elements_complete = fields.cursor().problems_so_far() == before;
     find_rotations(&mut builder);
     HOLDERS.iter().for_each(|(_, read)| read(&mut builder, fields));
@@ -80,7 +79,7 @@ pub fn read<'d>(fields: &Fields<'d>, path: Option<&Path>) -> Option<Found> {
     foundations::read(&mut builder, fields);
     loads::read(&mut builder, fields);
     if builder.elements_complete {
-        report_loose_nodes(&builder, fields, &names);
+        report_loose_nodes(&builder, fields);
     }
     Some(Found { structure: builder.structure, places: builder.places, notes: builder.notes })
 }
@@ -142,7 +141,7 @@ fn release_torsion(structure: &mut Structure) {
 }
 
 /// A node that nothing holds or connects would move freely: reported at its name.
-fn report_loose_nodes(builder: &Builder<'_>, fields: &Fields<'_>, names: &[Place<'_>]) {
+fn report_loose_nodes(builder: &Builder<'_>, fields: &Fields<'_>) {
     let structure = &builder.structure;
     if structure.superelement.is_none()
         && structure.elements.is_empty()
@@ -163,8 +162,9 @@ fn report_loose_nodes(builder: &Builder<'_>, fields: &Fields<'_>, names: &[Place
     for &node in elements.chain(dofs).chain(rigid).chain(ties).chain(supports).chain(springs) {
         touched[node] = true;
     }
-    // The author's nodes come first, so names and touched run side by side; generated nodes have elements.
-    for (node, place) in names.iter().enumerate() {
+    // The author's nodes come first, one for each key, so places and touched run side by side; generated nodes have
+    // elements.
+    for (node, place) in builder.listed_nodes.into_iter().flat_map(Cursor::key_places).enumerate() {
         if !touched[node] {
             place.problem(
                 format!(

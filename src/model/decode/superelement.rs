@@ -7,18 +7,17 @@ use super::builder::Builder;
 use super::loads::{check_case_name, factor};
 use super::matrix_file;
 use super::matrix_market::{Entries, Size};
-use super::reader::{Cursor, Entry, Place};
+use super::reader::{Cursor, Entry};
 use crate::model::structure::{Component, Load, LoadCase};
 use crate::model::superelement::Superelement;
 
 /// K may differ from its transpose by this much after scaling to unit diagonal.
 const SYMMETRY: f64 = 1e-8;
 
-/// Reads the superelement: its nodes, dofs, K and loads. Returns the places of the names of its nodes.
-pub fn read<'d>(builder: &mut Builder<'d>, at: Cursor<'d>, path: Option<&Path>) -> Option<Vec<Place<'d>>> {
+/// Reads the superelement: its nodes, dofs, K and loads.
+pub fn read<'d>(builder: &mut Builder<'d>, at: Cursor<'d>, path: Option<&Path>) -> Option<()> {
     let own = at.fields(&["stiffness", "loads", "nodes", "dofs"])?;
-    let nodes = own.required("nodes");
-    let names = builder.add_nodes(nodes, "superelement.nodes");
+    builder.add_nodes(own.required("nodes"), "superelement.nodes");
     let dofs = own.required("dofs").and_then(|at| dofs(builder, at));
     let stiffness = own.required("stiffness").and_then(|at| at.fields(&["file"])?.required("file"));
     let dofs = dofs?;
@@ -38,7 +37,7 @@ pub fn read<'d>(builder: &mut Builder<'d>, at: Cursor<'d>, path: Option<&Path>) 
     let (element, notes) = Superelement::new(builder.structure.dimension, &builder.structure.nodes, name, dofs, lower);
     builder.notes.extend(notes.into_iter().map(|note| format!("{name}: {note}")));
     builder.structure.superelement = Some(element);
-    Some(names)
+    Some(())
 }
 
 /// The node and the component of each row.
