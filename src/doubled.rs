@@ -55,10 +55,17 @@ pub struct Doubled {
 }
 
 impl Doubled {
-    /// a·b exactly.
+    /// a·b exactly, as long as what is rounded away is not below the numbers there are.
     pub fn product(a: f64, b: f64) -> Doubled {
         let hi = a * b;
-        Doubled { hi, lo: a.mul_add(b, -hi) }
+        if cfg!(any(target_feature = "fma", target_arch = "aarch64")) {
+            return Doubled { hi, lo: a.mul_add(b, -hi) };
+        }
+        // Where the processor is not known to have a fused product, calling one costs more than the halves of the
+        // digits multiplied one by one (Dekker 1971), which overflow where a or b does in 2²⁷ times its size.
+        let ([a1, a2], [b1, b2]) = (halves(a), halves(b));
+        let lo = ((a1 * b1 - hi) + a1 * b2 + a2 * b1) + a2 * b2;
+        Doubled { hi, lo: if lo.is_finite() { lo } else { a.mul_add(b, -hi) } }
     }
 
     /// What rounding to the nearest f64 leaves.
@@ -78,6 +85,14 @@ impl Doubled {
         let hi = a + b;
         Doubled { hi, lo: b - (hi - a) }
     }
+}
+
+/// a as the sum of two numbers of 26 digits (Veltkamp).
+fn halves(a: f64) -> [f64; 2] {
+    const SPLIT: f64 = (1_u64 << 27) as f64 + 1.0;
+    let scaled = SPLIT * a;
+    let first = scaled - (scaled - a);
+    [first, a - first]
 }
 
 impl Real for Doubled {
@@ -271,6 +286,25 @@ mod tests {
             let root = (a * a).sqrt();
             prop_assert!(close(root * root, exact(a * a), a.hi * a.hi));
         }
+    }
+
+    #[test]
+    fn a_product_is_what_a_fused_product_makes_it() {
+        let mut state = 0.3_f64;
+        let mut next = |exponent: i32| {
+            state = (state * 997.0).fract() + 1e-3;
+            (state - 0.5) * f64::powi(2.0, exponent)
+        };
+        // At 2^±500 nothing overflows, at 2^1000 the halves would.
+        for exponents in [[0, 0], [500, -500], [400, 500], [-400, -500], [1000, -900], [20, 1000], [3, -300]] {
+            for _ in 0..1000 {
+                let [a, b] = exponents.map(&mut next);
+                let Doubled { hi, lo } = Doubled::product(a, b);
+                assert_eq!((hi, lo), (a * b, a.mul_add(b, -hi)), "{a:e} {b:e}");
+            }
+        }
+        assert_eq!(Doubled::product(0.0, -2.0), Doubled { hi: 0.0, lo: 0.0 });
+        assert!(Doubled::product(f64::MAX, 2.0).hi.is_infinite());
     }
 
     #[test]
