@@ -117,13 +117,13 @@ impl MainSystem {
             if size > 0.0 { (state - 0.5).signum() / size.sqrt() } else { 0.0 }
         });
         z -= &self.z * (self.z.transpose() * &z);
-        let none = vec![0.0; self.f.len()];
-        let mut fields = vec![self.plain_displacements(&none, &z)];
-        for case in 0..self.f.len() {
-            let mut factors = none.clone();
-            factors[case] = 1.0;
-            fields.push(self.plain_displacements(&factors, &DVector::zeros(k)));
-        }
+        let cases = self.f.len();
+        let single = DMatrix::<f64>::identity(cases, cases);
+        let none = vec![0.0; cases];
+        // What the rounding of the fields themselves does to an estimate of it does not count.
+        let of_cases = (0..cases).map(|case| (&single.as_slice()[cases * case..cases * (case + 1)], DVector::zeros(k)));
+        let states: Vec<(&[f64], DVector<f64>)> = std::iter::once((&none[..], z)).chain(of_cases).collect();
+        let fields = self.unrefined_displacements(&states);
         fields.iter().map(|u| amplification(&self.k, u, &self.k.times(u))).fold(0.0, f64::max)
     }
 
