@@ -5,7 +5,7 @@
 use nalgebra::DMatrix;
 
 use super::dof::Dofs;
-use super::element::{Number, check_spring, slots, spring, stiffness};
+use super::element::{Number, Stiffness, check_spring, slots, spring, stiffness};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
@@ -24,6 +24,19 @@ pub fn assemble<T: Number>(
     structure: &Structure,
     dofs: &Dofs,
     stop: &dyn Fn() -> bool,
+) -> Result<SymmetricSparse<T>, MainSystemError> {
+    assemble_seen(structure, dofs, stop, |_| {})
+}
+
+/// The same; `see` is shown the stiffness of every element.
+///
+/// # Errors
+/// As [`assemble`].
+pub fn assemble_seen<T: Number>(
+    structure: &Structure,
+    dofs: &Dofs,
+    stop: &dyn Fn() -> bool,
+    mut see: impl FnMut(&Stiffness<T>),
 ) -> Result<SymmetricSparse<T>, MainSystemError> {
     let element_dofs = |index: usize, visit: &mut dyn FnMut(&[Option<usize>])| {
         let slots = slots(&structure.elements[index]);
@@ -68,6 +81,7 @@ pub fn assemble<T: Number>(
                     return Err(MainSystemError::Interrupted);
                 }
                 let k = stiffness(structure, index)?;
+                see(&k);
                 element_dofs(index, &mut |at| {
                     lower(at, &mut |row, column, i, j| push(row, column, k[(i, j)]));
                 });

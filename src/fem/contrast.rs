@@ -1,8 +1,40 @@
-//! Which parts of a structure are the stiffest and the softest, for the words of a refusal.
+//! Which parts of a structure are the stiffest and the softest, and by how much.
 
-use super::element::stiffness;
+use super::element::{Stiffness, stiffness};
 use super::error::MainSystemError;
+use crate::doubled::Real;
 use crate::model::structure::Structure;
+
+/// The largest entries of the softest and of the stiffest element or spring.
+pub struct Stiffnesses {
+    softest: f64,
+    stiffest: f64,
+}
+
+impl Stiffnesses {
+    /// Of the springs alone.
+    pub fn of_springs(structure: &Structure) -> Stiffnesses {
+        let mut all = Stiffnesses { softest: f64::INFINITY, stiffest: 0.0 };
+        let springs = structure.springs.iter().map(|spring| spring.stiffness);
+        springs.filter(|stiffness| *stiffness > 0.0).for_each(|stiffness| all.add(stiffness));
+        all
+    }
+
+    /// An element more.
+    pub fn take<T: Real>(&mut self, k: &Stiffness<T>) {
+        self.add((0..k.nrows()).map(|i| k[(i, i)].to_f64()).fold(0.0, f64::max));
+    }
+
+    fn add(&mut self, stiffness: f64) {
+        self.softest = self.softest.min(stiffness);
+        self.stiffest = self.stiffest.max(stiffness);
+    }
+
+    /// The stiffest over the softest.
+    pub fn contrast(&self) -> f64 {
+        if self.stiffest > 0.0 { self.stiffest / self.softest } else { 1.0 }
+    }
+}
 
 /// The refusal of a structure whose stiffness is lost beside that of its stiffest part.
 pub fn refusal(structure: &Structure) -> MainSystemError {

@@ -9,6 +9,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::contrast::Stiffnesses;
 use super::dof::Dofs;
 use super::idle_spins::idle_spins;
 use super::null_space::{DENSE, Terms, null_basis};
@@ -22,6 +23,15 @@ use crate::model::vector::{distance, unit, way};
 /// Singular values below this share of the largest belong to the null space, times the rounding of the coordinates
 /// beside the size of the cluster.
 const NULL: f64 = 1024.0 * f64::EPSILON;
+
+/// Elements and springs whose stiffnesses differ by no more than this leave no doubt whether what holds a part holds it
+/// in the digits of f64 and beyond; the softest shape of n membranes is 1/n⁴ as stiff as they are, and doubled
+/// precision resolves 1e-22.
+const CONTRAST: f64 = 1e6;
+
+/// Two elements that share a side of at least this share of the whole are held by it against turning, in the same
+/// digits: its square times the stiffness.
+const SHORT: f64 = 1e-6;
 
 /// A motion of the whole structure, its displacements per node in the order of [`Component::ALL`], largest translation
 /// (or rotation × size) about 1.
@@ -40,6 +50,40 @@ pub struct LooseMotions {
     pub motions: Vec<Motion>,
     /// Whether all parts were looked at one by one, so that no mechanism among them can have been missed.
     pub complete: bool,
+}
+
+impl LooseMotions {
+    /// Whether there are surely no others, so that the stiffness need not be asked: no bars, no superelement, not too
+    /// many parts connected to one another, no part so much softer than another, and no side so short beside the whole,
+    /// that only the numbers could tell whether it holds.
+    pub fn are_all(&self, structure: &Structure, stiffnesses: &Stiffnesses) -> bool {
+        let wide = structure.elements.iter().all(|element| element.nodes.len() > 2);
+        self.complete
+            && wide
+            && structure.superelement.is_none()
+            && stiffnesses.contrast() <= CONTRAST
+            && shortest_side(structure) >= SHORT * extent(structure)
+    }
+}
+
+/// Largest difference of a coordinate.
+fn extent(structure: &Structure) -> f64 {
+    let of_axis = |axis: usize| {
+        let all = structure.nodes.iter().map(|node| node.position[axis]);
+        let [least, most] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+        most - least
+    };
+    [0, 1, 2].into_iter().map(of_axis).fold(0.0, f64::max)
+}
+
+/// Least distance of two nodes of an element.
+fn shortest_side(structure: &Structure) -> f64 {
+    let place = |node: usize| structure.nodes[node].position;
+    let of_element = |nodes: &Vec<usize>| {
+        let pairs = nodes.iter().enumerate().flat_map(|(i, a)| nodes[..i].iter().map(move |b| [*a, *b]));
+        pairs.map(|[a, b]| distance(place(a), place(b))).fold(f64::INFINITY, f64::min)
+    };
+    structure.elements.iter().map(|element| of_element(&element.nodes)).fold(f64::INFINITY, f64::min)
 }
 
 /// The motions from the parts.

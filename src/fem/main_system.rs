@@ -12,8 +12,8 @@ use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::assembly::{Coupling, assemble, main_matrices};
-use super::contrast;
+use super::assembly::{Coupling, assemble, assemble_seen, main_matrices};
+use super::contrast::{self, Stiffnesses};
 use super::dof::Dofs;
 use super::elimination::Elimination;
 use super::error::MainSystemError;
@@ -111,8 +111,11 @@ impl MainSystem {
         watch.progress(&format!("assembling {} elements", structure.elements.len()), 0.0);
         let Outline { dofs, elimination, joints, independent, repeated, f, settled } =
             Outline::new(structure, all_joints, watch)?;
-        let k = assemble(structure, &dofs, &|| watch.stop())?;
-        let motions = loose_motions(structure, &dofs).motions;
+        let mut stiffnesses = Stiffnesses::of_springs(structure);
+        let k = assemble_seen(structure, &dofs, &|| watch.stop(), |k| stiffnesses.take(k))?;
+        let loose = loose_motions(structure, &dofs);
+        let no_others = loose.are_all(structure, &stiffnesses);
+        let motions = loose.motions;
         let rigid = kernel::rigid_kernel(structure, &joints, &motions)?;
         let mut main = main_matrices(&k, &elimination);
         let seconds = Seconds { assemble: clock.elapsed().as_secs_f64(), ..Seconds::default() };
@@ -160,7 +163,9 @@ impl MainSystem {
         let condensing = format!("condensing to {} joints", system.joints.len());
         watch.progress(&condensing, 0.0);
         system.condense(structure, main.d, watch)?;
-        system.add_internal_mechanisms(structure, watch)?;
+        if !no_others {
+            system.add_internal_mechanisms(structure, watch)?;
+        }
         system.seconds.condense = clock.elapsed().as_secs_f64();
         watch.progress(&condensing, 1.0);
         Ok(system)
