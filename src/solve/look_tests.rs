@@ -70,7 +70,8 @@ fn parts_tell_what_the_numbers_tell() {
 /// R against RF as it is condensed, and what follows from both.
 #[test]
 fn forces_of_the_held_joints_are_those_of_the_condensed_system() {
-    let between = |factor| stack(2, 26, 1, [0.5, -1.0], factor).text.replace(r#""fixed":["x"]"#, r#""fixed":["x","y"]"#);
+    let between =
+        |factor| stack(2, 26, 1, [0.5, -1.0], factor).text.replace(r#""fixed":["x"]"#, r#""fixed":["x","y"]"#);
     let roof = r#""contacts":[{"id":"j","edge":"s0.top","against":"ground","friction":0.3}]"#;
     let below = |factor| stack(1, 50, 0, [0.0, -1.0], factor).text.replace(r#""contacts":[]"#, roof);
     let mut seen_pressed = Vec::new();
