@@ -18,9 +18,7 @@ pub struct NameTable {
 impl NameTable {
     /// With room for so many names.
     pub fn with_capacity(count: usize) -> NameTable {
-        let mut table = NameTable::default();
-        table.slots = vec![FREE; slots_for(count)];
-        table
+        NameTable { slots: vec![FREE; slots_for(count)], ..NameTable::default() }
     }
 
     /// The number of a name.
