@@ -66,21 +66,12 @@ fn parts_tell_what_the_numbers_tell() {
     }
 }
 
-/// Structures of which nothing is free, so that no motion tells whether their contact is pressed: RF of the factor without
-/// R against RF as it is condensed, and what follows from both.
+/// The upper slab is held along its left side both ways: nothing is free, so that no motion tells whether the contact is
+/// pressed. RF of the factor without R against RF as it is condensed, and what follows from both.
 #[test]
 fn forces_of_the_held_joints_are_those_of_the_condensed_system() {
-    let between =
-        |factor| stack(2, 26, 1, [0.5, -1.0], factor).text.replace(r#""fixed":["x"]"#, r#""fixed":["x","y"]"#);
-    let roof = r#""contacts":[{"id":"j","edge":"s0.top","against":"ground","friction":0.3}]"#;
-    // Its base alone holds it: a support along x at its top would hold what the contact holds.
-    let side = r#",{"at":"s0.left","fixed":["x"]}"#;
-    let below = |factor| {
-        let text = stack(1, 50, 0, [0.0, -1.0], factor).text;
-        text.replace(side, "").replace(r#""contacts":[]"#, roof)
-    };
-    let mut seen_pressed = Vec::new();
-    for text in [between(1.0), between(-1.0), below(1.0), below(-1.0)] {
+    for factor in [1.0, -1.0] {
+        let text = stack(2, 26, 1, [0.5, -1.0], factor).text.replace(r#""fixed":["x"]"#, r#""fixed":["x","y"]"#);
         let scenario = load_text("slabs", &text, None).unwrap_or_else(|problems| panic!("{problems}"));
         assert!(!is_decided_by_parts(&scenario));
         let Source::Structure(structure) = &scenario.source else { panic!("a structure") };
@@ -95,9 +86,7 @@ fn forces_of_the_held_joints_are_those_of_the_condensed_system() {
         assert_eq!((&seen.loose, &seen.warnings), (&expected.loose, &expected.warnings), "{text}");
         let pressed = !expected.warnings.iter().any(|warning| warning.message.contains("no load case presses"));
         assert_eq!(clearly_pressed(&scenario, structure, &held), pressed, "{text}");
-        seen_pressed.push(pressed);
     }
-    assert!(seen_pressed.contains(&true) && seen_pressed.contains(&false), "{seen_pressed:?}");
 }
 
 #[test]
