@@ -30,6 +30,15 @@ pub enum State {
 }
 
 impl State {
+    /// The state of a pair, and what holds it where it is open: `slips` is what its tangential joint does, `None` where it
+    /// has none, and `bound` what friction can take.
+    pub fn of(open: bool, slips: Option<State>, bound: f64) -> (State, Option<State>) {
+        match (open, slips) {
+            (true, slips) => (State::Open, slips.filter(|_| bound > 0.0)),
+            (false, slips) => (slips.unwrap_or(State::Closed), None),
+        }
+    }
+
     /// The word used everywhere.
     pub fn word(self) -> &'static str {
         match self {

@@ -251,11 +251,7 @@ fn pair_state(
     } else {
         State::Stick
     };
-    let (word, held) = match tangential {
-        _ if open => (State::Open, (bound > 0.0).then_some(slip)),
-        None => (State::Closed, None),
-        Some(_) => (slip, None),
-    };
+    let (word, held) = State::of(open, tangential.map(|_| slip), bound);
     PairState {
         id: pair.id.clone(),
         law: pair.law.kind(),
@@ -299,11 +295,7 @@ fn pair_in_space(problem: &ContactProblem, cover: &Cover, state: &JointState, i:
         x_t.iter_mut().zip(pair.tangential.clone()).for_each(|(force, joint)| *force = state.sum(joint).cleaned());
     }
     let slip = if size(z_t) > 0.0 { State::Slip } else { State::Stick };
-    let (word, held) = match () {
-        () if open => (State::Open, (bound > 0.0).then_some(slip)),
-        () if !pair.rubs() => (State::Closed, None),
-        () => (slip, None),
-    };
+    let (word, held) = State::of(open, pair.rubs().then_some(slip), bound);
     let friction = if state.on_cone && size(z_t) > 0.0 { bound } else { size(x_t) };
     PairState {
         id: pair.id.clone(),

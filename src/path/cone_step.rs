@@ -8,7 +8,7 @@ use nalgebra::DVector;
 use super::start::{PathError, cold, state_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{PairState, State};
-use crate::contact::cone::{ConeFailure, ConeState};
+use crate::contact::cone::{ConeAnswer, ConeFailure, ConeState};
 use crate::contact::on_cone::OnCone;
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
@@ -106,7 +106,7 @@ impl<'a> Stepper<'a> {
             Err(ConeFailure::Stopped) => return Err(PathError::Interrupted),
             Err(ConeFailure::NotConverged { .. } | ConeFailure::NotFinite | ConeFailure::DoNotFit) => return Ok(None),
         };
-        let scheme = scheme_of(problem, &answer.states, &answer.z);
+        let scheme = scheme(problem, &answer);
         let increments = JointState::on_cone(problem, answer);
         Ok(Some(Step { z: &increments.z + slips_of(problem, from), increments, scheme }))
     }
@@ -144,18 +144,13 @@ pub(super) fn margins(pair: &PairState) -> [Option<f64>; 2] {
     [Some(if pair.state == State::Open { pair.z_n } else { pair.x_n }), slides]
 }
 
-fn scheme_of(problem: &ContactProblem, states: &[ConeState], z: &DVector<f64>) -> Scheme {
-    let pairs = problem.system.pairs.iter().zip(&problem.laws).zip(states);
+fn scheme(problem: &ContactProblem, answer: &ConeAnswer) -> Scheme {
+    let pairs = problem.system.pairs.iter().zip(&problem.laws).zip(&answer.states);
     pairs
-        .map(|((pair, law), state)| match state {
-            ConeState::Open if pair.rubs() && law.fixed_bound() > 0.0 => {
-                let slips = pair.tangential.clone().any(|joint| z[joint] != 0.0);
-                (State::Open, Some(if slips { State::Slip } else { State::Stick }))
-            }
-            ConeState::Open => (State::Open, None),
-            ConeState::Closed => (State::Closed, None),
-            ConeState::Stick => (State::Stick, None),
-            ConeState::Slip => (State::Slip, None),
+        .map(|((pair, law), state)| {
+            let moves = pair.tangential.clone().any(|joint| answer.z[joint] != 0.0);
+            let slips = if moves { State::Slip } else { State::Stick };
+            State::of(*state == ConeState::Open, pair.rubs().then_some(slips), law.fixed_bound())
         })
         .collect()
 }

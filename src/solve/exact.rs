@@ -113,20 +113,20 @@ impl Prepared {
 /// polygon, from which Newton's method goes on to the cone.
 pub fn final_scheme(solved: &Solved) -> Vec<PairScheme> {
     let RunData::Contact { contact, problem, pivots, last } = &solved.run else {
-        return solved.answer.pairs.iter().map(scheme_of).collect();
+        return solved.answer.pairs.iter().map(scheme_shown).collect();
     };
     let released = if !pivots.is_empty() {
         pivots.basis().z
     } else if problem.system.is_in_space() {
         (0..last.z.len()).filter(|&row| last.z[row] > 0.0).collect()
     } else {
-        return solved.answer.pairs.iter().map(scheme_of).collect();
+        return solved.answer.pairs.iter().map(scheme_shown).collect();
     };
     schemes_of(released.into_iter().map(|row| contact.rows[row]), &problem.laws, problem.polygon)
 }
 
 /// The working scheme of a pair in the plane as its state is shown.
-fn scheme_of(pair: &PairState) -> PairScheme {
+fn scheme_shown(pair: &PairState) -> PairScheme {
     let slip = |state: Option<State>| match state {
         Some(State::SlipPlus) => Tangential::PLUS,
         Some(State::SlipMinus) => Tangential::MINUS,

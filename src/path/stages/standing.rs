@@ -251,7 +251,7 @@ impl Standing {
                 };
                 let slips = self.last_slip[i].filter(|&sense| self.at_limit(i, sense));
                 let slips = slips.map_or(State::Stick, Sense::state);
-                let (state, held) = scheme_of(self.is_open(i), pair.rubs(), slips, bound);
+                let (state, held) = State::of(self.is_open(i), pair.rubs().then_some(slips), bound);
                 PairState {
                     id: pair.id.clone(),
                     law: pair.law.kind(),
@@ -270,14 +270,5 @@ impl Standing {
                 }
             })
             .collect()
-    }
-}
-
-/// The word of a pair, and what holds it where it is open.
-pub(super) fn scheme_of(open: bool, tangential: bool, slips: State, bound: f64) -> (State, Option<State>) {
-    match (open, tangential) {
-        (true, _) => (State::Open, (bound > 0.0).then_some(slips)),
-        (false, false) => (State::Closed, None),
-        (false, true) => (slips, None),
     }
 }

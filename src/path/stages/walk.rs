@@ -10,7 +10,7 @@ use super::event::next_event;
 use super::follower::{Follower, Limit, Place, Targets, Way, recorded};
 use super::rate_problem::{Ended, RateProblem, Rates};
 use super::record::History;
-use super::standing::{Laws, Normal, Reached, Sense, Standing, joint_scales, scheme_of};
+use super::standing::{Laws, Normal, Reached, Sense, Standing, joint_scales};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{PairState, State};
 use crate::contact::problem::ContactProblem;
@@ -184,7 +184,7 @@ impl<'a> Walk<'a> {
                     _ => State::Stick,
                 };
                 let held = if open && pair.rubs() { self.place.laws.constant(i) } else { 0.0 };
-                scheme_of(open, pair.rubs(), slips, held)
+                State::of(open, pair.rubs().then_some(slips), held)
             })
             .collect()
     }
