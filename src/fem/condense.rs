@@ -18,8 +18,8 @@ use crate::model::structure::Structure;
 use crate::model::vector::length;
 use crate::watch::Watch;
 
-/// R and RF are taken from the f64 factor as they are where rounding can hardly cost them more than this share of the
-/// energy: R of that of a dislocation, RF of that of a load.
+/// R and RF of the f64 factor are taken as they are where rounding hardly changes the energy uᵀ K u by more than this share
+/// of it, in the field of every load and in that of a dislocation.
 const MOST_LOSS: f64 = 1e-12;
 
 impl MainSystem {
@@ -31,7 +31,7 @@ impl MainSystem {
         watch: &dyn Watch,
     ) -> Result<(), MainSystemError> {
         if self.factor.is_shifted() {
-            return self.condense_doubled(structure, watch);
+            return self.condense_doubled(true, structure, watch);
         }
         self.doubled = None;
         self.r = self.factor.schur(d);
@@ -40,25 +40,29 @@ impl MainSystem {
         self.refine_if_lost(structure, watch)
     }
 
-    /// Where rounding may cost R or RF too much, computes RF and displacements in doubled precision, which takes a few
-    /// solutions; R too, which takes one for each of its columns, where it is measured to be wrong: the field of a load
-    /// may bend the whole structure where those of the joints do not.
+    /// Where rounding may cost too much, goes on in doubled precision: with R only where it is measured to be wrong, for the
+    /// field of a load may bend the whole structure where those of the joints do not.
     pub(super) fn refine_if_lost(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
         self.amplification = self.worst_amplification();
         if !loses(self.amplification, self.elimination.masters()) {
             return Ok(());
         }
-        if !self.stiffness_is_right(structure, watch)? {
-            return self.condense_doubled(structure, watch);
-        }
-        self.amplification = 1.0;
-        self.take_loads_doubled(structure, watch)
+        let is_wrong = !self.stiffness_is_right(structure, watch)?;
+        self.condense_doubled(is_wrong, structure, watch)
     }
 
-    fn condense_doubled(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
-        let r = self.refinement(structure, watch)?.stiffness(watch)?;
-        self.r = r.ok_or_else(|| contrast::refusal(structure))?;
-        kernel::project(&mut self.r, &self.z);
+    /// RF in doubled precision, which takes a few solutions; R too if it is asked for, which takes one for each column.
+    fn condense_doubled(
+        &mut self,
+        with_r: bool,
+        structure: &Structure,
+        watch: &dyn Watch,
+    ) -> Result<(), MainSystemError> {
+        if with_r {
+            let r = self.refinement(structure, watch)?.stiffness(watch)?;
+            self.r = r.ok_or_else(|| contrast::refusal(structure))?;
+            kernel::project(&mut self.r, &self.z);
+        }
         self.amplification = 1.0;
         self.take_loads_doubled(structure, watch)
     }
