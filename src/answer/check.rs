@@ -6,18 +6,11 @@ use super::pairs::JointState;
 use super::record::Check;
 use crate::contact::on_cone::OnCone;
 use crate::contact::problem::ContactProblem;
-use crate::contact::sum::Sum;
+use crate::contact::sum::{HIDDEN, LAW_ROUNDING, Sum};
 use crate::contact::sums::{pair_sums, share_of};
-use crate::lcp::problem::NOISE;
 
 /// Largest relative violation that an answer may have where sizes are those of a whole problem.
 pub const TOLERANCE: f64 = 1e-9;
-/// Largest share of the terms of its own row by which a law may be violated: what rounding leaves of a sum.
-pub const ROUNDING: f64 = 4.0 * NOISE;
-
-/// Largest share of the loads that rounding may hide. Displacements so large that the terms of a force exceed the loads by
-/// some 1e9 belong to a motion that nothing resists: any load at all would pass as rounding beside them.
-pub const HIDDEN: f64 = 1e-4;
 
 /// Checks an answer over the joints, row by row: forces and reserves as shares of the terms they are summed from
 /// (loads, gaps closed by force, R z), displacements as the share of those forces that depends on them, and of a couple
@@ -64,9 +57,9 @@ pub fn check_contact(problem: &ContactProblem, state: &JointState, equilibrium: 
     let loads = load_size(problem);
     if system.rounded && loads > 0.0 {
         let free = (0..system.joint_count()).filter(|&joint| !system.is_forced(joint));
-        check.hidden = free.map(|joint| ROUNDING * forces[joint].magnitude / loads).fold(0.0, f64::max);
+        check.hidden = free.map(|joint| LAW_ROUNDING * forces[joint].magnitude / loads).fold(0.0, f64::max);
     }
-    check.passed = check.is_within(ROUNDING);
+    check.passed = check.is_within(LAW_ROUNDING);
     check
 }
 
@@ -82,7 +75,7 @@ fn check_on_cone(problem: &ContactProblem, state: &JointState, forces: &[Sum], e
         hidden: found.hidden,
         ..Check::default()
     };
-    check.passed = found.passed && check.is_within(ROUNDING);
+    check.passed = found.passed && check.is_within(LAW_ROUNDING);
     check
 }
 

@@ -7,7 +7,7 @@ use crate::lcp::problem::NOISE;
 
 /// Checks z ≥ 0, w = M z + q ≥ 0 and w_i = 0 where z_i > 0. Every w_i is judged against the sum of the magnitudes of
 /// its own terms, so that no row hides behind the size of another one; z_i has no terms and must not be negative at
-/// all. `tolerance`: the share of that sum that passes as rounding, [`ROUNDING`] for an answer that is not marginal.
+/// all. `tolerance`: the share of that sum that passes as rounding, [`ROW_ROUNDING`] for an answer that is not marginal.
 pub fn check_plain(lcp: &MirroredLcp, z: &[f64], tolerance: f64) -> Check {
     let length = z.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
     let mut check = Check::default();
@@ -35,8 +35,8 @@ pub fn row(lcp: &MirroredLcp, z: &[f64], i: usize) -> Sum {
     sum
 }
 
-/// The tolerance of an answer of a bare LCP.
-pub const ROUNDING: f64 = NOISE;
+/// Largest share of its own terms by which a row of a bare LCP may be violated.
+pub const ROW_ROUNDING: f64 = NOISE;
 
 #[cfg(test)]
 mod tests {
@@ -55,9 +55,9 @@ mod tests {
         let m: &[&[f64]] = &[&[1.0, 0.0, 0.0], &[0.0, 0.5, -1.0], &[0.0, 0.0, 1.0]];
         let q = [-1.0, 0.0, -1e-17];
         // w_2 = 0.5 · 2e-17 − 1e-17 = 0.
-        assert!(check_plain(&lcp(m, &q), &[1.0, 2e-17, 1e-17], ROUNDING).passed);
+        assert!(check_plain(&lcp(m, &q), &[1.0, 2e-17, 1e-17], ROW_ROUNDING).passed);
         // It is short by a tenth of what it sums, though that is nothing beside the first row.
-        let check = check_plain(&lcp(m, &q), &[1.0, 1.8e-17, 1e-17], ROUNDING);
+        let check = check_plain(&lcp(m, &q), &[1.0, 1.8e-17, 1e-17], ROW_ROUNDING);
         assert!(!check.passed && check.min_w < -0.01, "{check:?}");
     }
 
@@ -65,19 +65,19 @@ mod tests {
     fn a_negative_z_does_not_hide_behind_a_large_one() {
         // z_2 = −1 beside z_1 = 1e12.
         let m: &[&[f64]] = &[&[1.0, 0.0], &[0.0, 1.0]];
-        assert!(!check_plain(&lcp(m, &[-1e12, 1.0]), &[1e12, -1.0], ROUNDING).passed);
-        assert!(check_plain(&lcp(m, &[-1e12, 1.0]), &[1e12, 0.0], ROUNDING).passed);
+        assert!(!check_plain(&lcp(m, &[-1e12, 1.0]), &[1e12, -1.0], ROW_ROUNDING).passed);
+        assert!(check_plain(&lcp(m, &[-1e12, 1.0]), &[1e12, 0.0], ROW_ROUNDING).passed);
     }
 
     #[test]
     fn a_large_w_beside_a_small_z_is_no_complementarity() {
         let m: &[&[f64]] = &[&[1.0, 0.0], &[0.0, 1.0]];
-        assert!(!check_plain(&lcp(m, &[-1.0, 1.0]), &[1.0, 1e-12], ROUNDING).passed);
+        assert!(!check_plain(&lcp(m, &[-1.0, 1.0]), &[1.0, 1e-12], ROW_ROUNDING).passed);
     }
 
     #[test]
     fn what_is_not_a_number_does_not_pass() {
         let m: &[&[f64]] = &[&[1.0]];
-        assert!(!check_plain(&lcp(m, &[-1.0]), &[f64::NAN], ROUNDING).passed);
+        assert!(!check_plain(&lcp(m, &[-1.0]), &[f64::NAN], ROW_ROUNDING).passed);
     }
 }

@@ -2,6 +2,13 @@
 
 use crate::lcp::problem::NOISE;
 
+/// Largest share of the terms of its own row by which a law of contact may be violated: what rounding leaves of a sum.
+pub const LAW_ROUNDING: f64 = 4.0 * NOISE;
+
+/// Largest share of the loads that rounding may hide. Displacements so large that the terms of a force exceed the loads by
+/// some 1e9 belong to a motion that nothing resists: any load at all would pass as rounding beside them.
+pub const HIDDEN: f64 = 1e-4;
+
 /// A value and the sum of the magnitudes of its terms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sum {

@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::engines::{PIVOT_LIMIT, kind};
 use super::prepared::{Geometry, Prepared};
-use crate::answer::check::{HIDDEN, check_contact};
+use crate::answer::check::check_contact;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{
     Answer, Attempt, AttemptRules, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState, Reaction,
@@ -12,6 +12,7 @@ use crate::answer::record::{
 };
 use crate::contact::problem::ContactProblem;
 use crate::contact::self_stress::may_hold_otherwise;
+use crate::contact::sum::HIDDEN;
 use crate::contact::system::ContactSystem;
 use crate::contact::written::ContactLcp;
 use crate::fem::Displacements;

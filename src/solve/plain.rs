@@ -16,7 +16,7 @@ use super::settle::{ray_holds, settled};
 use super::state::{LookedAt, RunData, Solved};
 use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules, PlainCovering};
 use crate::answer::check::TOLERANCE;
-use crate::answer::check_plain::{ROUNDING, check_plain};
+use crate::answer::check_plain::{ROW_ROUNDING, check_plain};
 use crate::answer::record::{OutcomeKind, PlainSolution, Size, Verdict};
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::sentence;
@@ -152,7 +152,7 @@ pub(super) fn attempt_plain(
     answer.solution = Some(PlainSolution { z: run.point.z.clone(), w: run.point.w.clone() });
     if answer.is_answer() {
         // A marginal answer holds only up to the p that was left.
-        let tolerance = if marginal { TOLERANCE } else { ROUNDING };
+        let tolerance = if marginal { TOLERANCE } else { ROW_ROUNDING };
         answer.check = check_plain(&lcp, &run.point.z, tolerance);
         if !answer.check.passed {
             fail_check(&mut answer);
@@ -267,7 +267,7 @@ fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn
 pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], rules: AttemptRules) -> Solved {
     let w = lcp.times(z) + &lcp.q;
     let point = Point { w: w.iter().copied().collect(), z: z.to_vec(), p: 0.0 };
-    let check = check_plain(lcp, &point.z, ROUNDING);
+    let check = check_plain(lcp, &point.z, ROW_ROUNDING);
     let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
     let size = Size { lcp: lcp.size(), ..Size::default() };
     let mut answer = empty_answer(&run, 1.0, rules, size);

@@ -4,7 +4,7 @@
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use crate::answer::check_plain::{ROUNDING, check_plain, row};
+use crate::answer::check_plain::{ROW_ROUNDING, check_plain, row};
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::corrected;
 use crate::lcp::exact::dyadic::rational;
@@ -26,7 +26,7 @@ const EXACT_BASIS: usize = 400;
 /// The point of a basis without p at which all the signs hold, as near as f64 can tell; else the point as it was.
 pub(super) fn settled(lcp: &MirroredLcp, basis: &Basis, point: &Point, watch: &dyn Watch) -> Point {
     let refined = refined(lcp, basis, point);
-    if let Some(refined) = refined.filter(|refined| check_plain(lcp, &refined.z, ROUNDING).passed) {
+    if let Some(refined) = refined.filter(|refined| check_plain(lcp, &refined.z, ROW_ROUNDING).passed) {
         return refined;
     }
     exact(lcp, basis, watch).map_or_else(|| point.clone(), |z| at(lcp, basis, z))

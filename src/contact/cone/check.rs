@@ -4,13 +4,7 @@
 use nalgebra::DVector;
 
 use super::{ConeProblem, length};
-use crate::contact::sum::Sum;
-use crate::lcp::problem::NOISE;
-
-/// Largest share of the terms of its own row by which a law may be violated: what rounding leaves of a sum.
-const ROUNDING: f64 = 4.0 * NOISE;
-/// Largest share of the loads that rounding may hide: beside terms some 1e9 times the loads, any load would pass.
-const HIDDEN: f64 = 1e-4;
+use crate::contact::sum::{HIDDEN, LAW_ROUNDING, Sum};
 
 /// How far an answer is from the laws; all as shares, 0 … 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,9 +45,9 @@ impl ConeCheck {
         let bounds = problem.pairs.iter().map(|pair| pair.fixed()).fold(0.0, f64::max);
         let loads = problem.load_terms.amax().max(problem.load.amax()).max(bounds);
         if loads > 0.0 {
-            check.hidden = forces.iter().map(|force| ROUNDING * force.magnitude / loads).fold(0.0, f64::max);
+            check.hidden = forces.iter().map(|force| LAW_ROUNDING * force.magnitude / loads).fold(0.0, f64::max);
         }
-        check.passed = worst <= ROUNDING && check.hidden <= HIDDEN;
+        check.passed = worst <= LAW_ROUNDING && check.hidden <= HIDDEN;
         check
     }
 
