@@ -81,6 +81,6 @@ pub(crate) use kernel::mutual_displacements;
 pub use kinematics::Kinematics;
 pub use loose::Motion;
 pub use main_system::{MainSystem, Seconds, Unknowns};
-pub use recovery::{MemberForces, MembraneStress, NodeStress, Reaction};
+pub use recovery::{ElementStress, MemberForces, NodeStress, Reaction};
 pub use repeated::Repeated;
 pub use sparse::SymmetricSparse;

@@ -27,7 +27,7 @@ pub struct MemberForces {
 
 /// Stress of one area or solid element at its centre, tension positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MembraneStress {
+pub struct ElementStress {
     /// Index into [`Structure::elements`].
     pub element: usize,
     /// Its components.
@@ -101,12 +101,12 @@ impl MainSystem {
     }
 
     /// Stresses at the centres of all area and solid elements under the displacements `u` and Σ factor·case.
-    pub fn element_stresses(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<MembraneStress> {
+    pub fn element_stresses(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> Vec<ElementStress> {
         let loads = ActingLoads::of(structure, factors);
         let stresses = (0..structure.elements.len()).filter_map(|index| {
             let element = finite_element(structure, index).ok()?;
             let stress = element.stress(&own_displacements(structure, index, u), loads.on(index))?;
-            Some(MembraneStress { element: index, stress })
+            Some(ElementStress { element: index, stress })
         });
         stresses.collect()
     }

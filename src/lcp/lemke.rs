@@ -23,7 +23,7 @@ use crate::lcp::pivot_state::{Candidate, NOISE, PivotState, Sizes};
 /// The engine; see the module.
 #[derive(Clone, Debug)]
 pub struct SchemeEngine {
-    stand: PivotState,
+    state: PivotState,
     rule: TieRule,
     random: ChaCha8Rng,
     pivots: PivotLog,
@@ -56,18 +56,18 @@ impl SchemeEngine {
             ended: None,
             table_row: (0..lcp.full_size).map(|row| (Variable::W(row), row)).collect(),
             artefact_point: None,
-            stand: PivotState::new(Arc::clone(&lcp), Dictionary::new(&lcp), sizes),
+            state: PivotState::new(Arc::clone(&lcp), Dictionary::new(&lcp), sizes),
         }
     }
 
     /// The problem that is solved.
     pub fn lcp(&self) -> &MirroredLcp {
-        &self.stand.lcp
+        &self.state.lcp
     }
 
     /// How often the dictionary was built afresh from the data.
     pub fn refreshes(&self) -> usize {
-        self.stand.refreshes
+        self.state.refreshes
     }
 
     /// After a normal or trivial end: the dictionary, standing on the answer, ready to follow changes of the load.
@@ -75,7 +75,7 @@ impl SchemeEngine {
     pub fn into_parametric(self) -> Option<Parametric> {
         let on_answer = matches!(self.ended, Some(Outcome::Trivial | Outcome::Normal { marginal: false }));
         match self.rule {
-            TieRule::Lexicographic(order) if on_answer => Parametric::standing(self.stand, order),
+            TieRule::Lexicographic(order) if on_answer => Parametric::standing(self.state, order),
             _ => None,
         }
     }
@@ -87,12 +87,12 @@ impl SchemeEngine {
 
     /// The end where nothing goes on but p is as good as zero: an answer.
     fn at_limit_of_p(&self) -> Option<Outcome> {
-        self.stand.lcp.is_marginal(&self.stand.point()).then_some(Outcome::Normal { marginal: true })
+        self.state.lcp.is_marginal(&self.state.point()).then_some(Outcome::Normal { marginal: true })
     }
 
     /// The end where no row blocks the entering variable of column c.
     fn nothing_blocks(&mut self, c: usize) -> Step<f64> {
-        let end = self.at_limit_of_p().unwrap_or_else(|| Outcome::Ray(self.stand.ray(c)));
+        let end = self.at_limit_of_p().unwrap_or_else(|| Outcome::Ray(self.state.ray(c)));
         self.end(end)
     }
 
@@ -102,7 +102,7 @@ impl SchemeEngine {
 
     /// The entry of p (pivot 0), or the trivial end.
     fn start(&mut self) -> Step<f64> {
-        let lcp = Arc::clone(&self.stand.lcp);
+        let lcp = Arc::clone(&self.state.lcp);
         // q and d of all rows, mirrors included. q itself is data; that of a mirror is a sum and carries its rounding.
         let mut rows: Vec<(Slot, bool, f64, f64)> =
             (0..lcp.size()).map(|i| (Slot::W(i), false, lcp.q[i], lcp.covering[i])).collect();
@@ -122,7 +122,7 @@ impl SchemeEngine {
             return self.broken("the covering vector is zero in a row whose q is negative");
         }
         let needed = negative.iter().map(|row| -row.2 / row.3).fold(0.0, f64::max);
-        self.stand.sizes.p = needed;
+        self.state.sizes.p = needed;
         let tied: Vec<Candidate> = negative
             .iter()
             .filter(|row| {
@@ -132,7 +132,7 @@ impl SchemeEngine {
             .map(|row| Candidate { variable: row.0, mirror_row: row.1, value: -row.2, fall: row.3, noise: 0.0 })
             .collect();
         let c = lcp.size();
-        self.stand.fetch(c);
+        self.state.fetch(c);
         let chosen = self.choose(c, &tied, true);
         self.exchange(tied[chosen], c, needed, &tied);
         Step::Pivoted
@@ -140,12 +140,12 @@ impl SchemeEngine {
 
     /// Index of the candidate that leaves of those tied along column c.
     fn choose(&mut self, c: usize, tied: &[Candidate], at_start: bool) -> usize {
-        let names: Vec<Variable> = tied.iter().map(|candidate| self.stand.name(candidate)).collect();
+        let names: Vec<Variable> = tied.iter().map(|candidate| self.state.name(candidate)).collect();
         if tied.len() > 1 {
-            self.stand.dictionary.settle_w();
+            self.state.dictionary.settle_w();
         }
         let table_row = |name: Variable| self.table_row.get(&name).copied().unwrap_or(usize::MAX);
-        let rows = self.stand.inverse_rows(c, tied, &table_row);
+        let rows = self.state.inverse_rows(c, tied, &table_row);
         let mut random = self.random.clone();
         let chosen = choose(&self.rule, &mut random, &names, &rows, at_start);
         self.random = random;
@@ -154,13 +154,13 @@ impl SchemeEngine {
 
     /// Makes the pivot and its record.
     fn exchange(&mut self, leaving: Candidate, c: usize, step: f64, tied: &[Candidate]) {
-        let entering = self.stand.variable(self.stand.dictionary.column[c], false);
-        let name = self.stand.name(&leaving);
-        let mut ties: Vec<Variable> = tied.iter().map(|tie| self.stand.name(tie)).collect();
+        let entering = self.state.variable(self.state.dictionary.column[c], false);
+        let name = self.state.name(&leaving);
+        let mut ties: Vec<Variable> = tied.iter().map(|tie| self.state.name(tie)).collect();
         ties.sort_unstable();
-        let p_before = if self.pivots.is_empty() { step } else { self.stand.p() };
+        let p_before = if self.pivots.is_empty() { step } else { self.state.p() };
         let slipping = match (leaving.variable, leaving.mirror_row) {
-            (Slot::W(i), true) => match self.stand.dictionary.place(Slot::W(i)) {
+            (Slot::W(i), true) => match self.state.dictionary.place(Slot::W(i)) {
                 Place::Column(j) if j != c => Some(i),
                 _ => None,
             },
@@ -171,9 +171,9 @@ impl SchemeEngine {
                 self.finish_artefact(i, c, step);
                 None
             }
-            None => self.stand.exchange(&leaving, c, step, tied),
+            None => self.state.exchange(&leaving, c, step, tied),
         };
-        let p_after = self.artefact_point.as_ref().map_or_else(|| self.stand.p(), |point| point.p);
+        let p_after = self.artefact_point.as_ref().map_or_else(|| self.state.p(), |point| point.p);
         self.pivots.push(Pivot {
             step: self.pivots.count(),
             entering,
@@ -195,19 +195,19 @@ impl SchemeEngine {
     /// The other reserve of a slipping couple is used up: its z would enter beside the one that is basic, and
     /// (z⁺, z⁻) = (1, 1) moves nothing else. The run ends in that ray at the vertex after this step.
     fn finish_artefact(&mut self, i: usize, c: usize, step: f64) {
-        let stand = &mut self.stand;
-        stand.dictionary.advance(&stand.column, step);
-        let entering = stand.dictionary.column[c];
-        let mut point = stand.point();
-        match stand.variable(entering, false) {
+        let state = &mut self.state;
+        state.dictionary.advance(&state.column, step);
+        let entering = state.dictionary.column[c];
+        let mut point = state.point();
+        match state.variable(entering, false) {
             Variable::W(k) => point.w[k] = step,
             Variable::Z(k) => point.z[k] = step,
             Variable::P => point.p = step,
         }
-        let n = stand.lcp.full_size;
+        let n = state.lcp.full_size;
         let mut z = vec![0.0; n];
-        let other = stand.variable(Slot::Z(i), true);
-        for variable in [stand.variable(Slot::Z(i), false), other] {
+        let other = state.variable(Slot::Z(i), true);
+        for variable in [state.variable(Slot::Z(i), false), other] {
             if let Variable::Z(k) = variable {
                 z[k] = 1.0;
             }
@@ -230,26 +230,26 @@ impl Engine for SchemeEngine {
         if let Some(cycle) = self.pivots.cycle(self.rule.returns_allowed()) {
             return self.end(self.at_limit_of_p().unwrap_or(Outcome::Cycle(cycle)));
         }
-        if !self.stand.check_drift() {
+        if !self.state.check_drift() {
             return self.broken("the equations of the working scheme are singular");
         }
-        let Some(c) = self.stand.column_of(entering) else {
+        let Some(c) = self.state.column_of(entering) else {
             return self.broken("the entering variable is basic already");
         };
-        self.stand.fetch(c);
-        let (mut tied, mut step) = self.stand.blocking(c, true);
-        if self.stand.is_suspicious(c, &tied) && self.stand.refine_if_doubtful(c, &tied) {
-            (tied, step) = self.stand.blocking(c, true);
+        self.state.fetch(c);
+        let (mut tied, mut step) = self.state.blocking(c, true);
+        if self.state.is_suspicious(c, &tied) && self.state.refine_if_doubtful(c, &tied) {
+            (tied, step) = self.state.blocking(c, true);
         }
         if tied.is_empty() {
             return self.nothing_blocks(c);
         }
         let mut chosen = self.choose(c, &tied, false);
         // A pivot on a small rate needs a row of the dictionary whose errors are small beside that rate.
-        if self.stand.is_suspicious(c, &tied[chosen..=chosen])
-            && self.stand.refine_if_doubtful(c, &tied[chosen..=chosen])
+        if self.state.is_suspicious(c, &tied[chosen..=chosen])
+            && self.state.refine_if_doubtful(c, &tied[chosen..=chosen])
         {
-            (tied, step) = self.stand.blocking(c, true);
+            (tied, step) = self.state.blocking(c, true);
             if tied.is_empty() {
                 return self.nothing_blocks(c);
             }
@@ -264,7 +264,7 @@ impl Engine for SchemeEngine {
     }
 
     fn point(&self) -> Point {
-        self.artefact_point.clone().unwrap_or_else(|| self.stand.point())
+        self.artefact_point.clone().unwrap_or_else(|| self.state.point())
     }
 }
 

@@ -36,7 +36,7 @@ const BLURRED: f64 = 3e-9;
 /// The engine; see the module. It keeps its dictionary from one path to the next.
 #[derive(Clone, Debug)]
 pub struct Parametric {
-    stand: PivotState,
+    state: PivotState,
     rule: TieRule,
     /// Rows of the whole LCP whose z is basic.
     scheme: BTreeSet<usize>,
@@ -94,7 +94,7 @@ impl Parametric {
         let dictionary = Dictionary::at_basis(&lcp, basis)?;
         let sizes = sizes(&lcp);
         Some(Parametric {
-            stand: PivotState::new(lcp, dictionary, sizes),
+            state: PivotState::new(lcp, dictionary, sizes),
             rule: TieRule::Lexicographic(order),
             scheme: basis.z.iter().copied().collect(),
             driver: Slot::P,
@@ -102,41 +102,41 @@ impl Parametric {
     }
 
     /// Stands where a run of Lemke's algorithm ended; `None` while p is basic.
-    pub(crate) fn standing(stand: PivotState, order: Vec<usize>) -> Option<Parametric> {
-        stand.column_of(Slot::P)?;
-        let scheme = stand
+    pub(crate) fn standing(state: PivotState, order: Vec<usize>) -> Option<Parametric> {
+        state.column_of(Slot::P)?;
+        let scheme = state
             .dictionary
             .row
             .iter()
-            .filter_map(|&local| match stand.variable(local, false) {
+            .filter_map(|&local| match state.variable(local, false) {
                 Variable::Z(k) => Some(k),
                 _ => None,
             })
             .collect();
-        Some(Parametric { stand, rule: TieRule::Lexicographic(order), scheme, driver: Slot::P })
+        Some(Parametric { state, rule: TieRule::Lexicographic(order), scheme, driver: Slot::P })
     }
 
     /// Takes the next load increment after a path that ended at its target. q and the constants of the mirrors are
     /// those of that target, M and the mirrors' friction are the same; only the increment (d, e) is new. `false` where
     /// the dictionary cannot be carried over.
     pub fn reload(&mut self, lcp: Arc<MirroredLcp>) -> bool {
-        if self.stand.column_of(Slot::P).is_none() {
+        if self.state.column_of(Slot::P).is_none() {
             return false;
         }
-        match multiple(&lcp, &self.stand.lcp) {
-            Some(factor) => self.stand.dictionary.rescale(factor),
-            None => self.stand.dictionary.reload(&lcp),
+        match multiple(&lcp, &self.state.lcp) {
+            Some(factor) => self.state.dictionary.rescale(factor),
+            None => self.state.dictionary.reload(&lcp),
         }
         let sizes = sizes(&lcp);
-        self.stand.reload(lcp, sizes);
-        self.stand.fresh = false;
+        self.state.reload(lcp, sizes);
+        self.state.fresh = false;
         self.driver = Slot::P;
         true
     }
 
     /// How often the dictionary was built afresh from the data.
     pub fn refreshes(&self) -> usize {
-        self.stand.refreshes
+        self.state.refreshes
     }
 
     /// The scheme it stands on.
@@ -148,29 +148,29 @@ impl Parametric {
     /// All variables where it stands, as the kept dictionary holds them, refined from the data where rounding shows.
     pub fn point(&mut self) -> Point {
         self.sharpen();
-        self.stand.point()
+        self.state.point()
     }
 
     fn sharpen(&mut self) {
-        if self.stand.blur() > BLURRED {
-            self.stand.refine();
+        if self.state.blur() > BLURRED {
+            self.state.refine();
         }
     }
 
     /// Refines the values from the data.
     pub fn refine(&mut self) {
-        self.stand.refine();
+        self.state.refine();
     }
 
     fn fetch(&mut self) -> Option<usize> {
-        let c = self.stand.column_of(self.driver)?;
-        self.stand.fetch(c);
+        let c = self.state.column_of(self.driver)?;
+        self.state.fetch(c);
         Some(c)
     }
 
     /// The rows that block; t is watched by its target and does not.
     fn blocking(&mut self, c: usize) -> (Vec<Candidate>, f64) {
-        self.stand.blocking(c, false)
+        self.state.blocking(c, false)
     }
 
     /// The vertex where `row` of the whole LCP has both its variables at zero; t is basic.
@@ -188,14 +188,14 @@ impl Parametric {
     /// the data; solved afresh where that does not agree with them, or agrees only because displacements are so large
     /// that their rounding hides the load.
     fn knot(&self, row: usize) -> Point {
-        let sharp = if self.stand.blur() <= BLURRED { self.stand.sharp_point() } else { None };
-        let point = sharp.or_else(|| vertex(&self.stand.lcp, &self.knot_basis(row)));
-        point.unwrap_or_else(|| self.stand.point())
+        let sharp = if self.state.blur() <= BLURRED { self.state.sharp_point() } else { None };
+        let point = sharp.or_else(|| vertex(&self.state.lcp, &self.knot_basis(row)));
+        point.unwrap_or_else(|| self.state.point())
     }
 
     /// The answer of the present scheme at t, from the data.
     fn point_at(&self, t: f64) -> Option<Point> {
-        let mut lcp = MirroredLcp::clone(&self.stand.lcp);
+        let mut lcp = MirroredLcp::clone(&self.state.lcp);
         lcp.q += t * &lcp.covering;
         for mirror in lcp.mirrors.iter_mut().flatten() {
             mirror.constant += t * mirror.covering;
@@ -208,19 +208,19 @@ impl Parametric {
     /// Index of the candidate that leaves of those tied along column c.
     fn choose(&mut self, c: usize, tied: &[Candidate]) -> usize {
         if tied.len() > 1 {
-            self.stand.dictionary.settle_w();
+            self.state.dictionary.settle_w();
         }
-        let names: Vec<Variable> = tied.iter().map(|row| self.stand.name(row)).collect();
+        let names: Vec<Variable> = tied.iter().map(|row| self.state.name(row)).collect();
         // The lexicographic rule asks for no rows of the tableau and draws nothing.
-        let rows = self.stand.inverse_rows(c, tied, &|_| 0);
+        let rows = self.state.inverse_rows(c, tied, &|_| 0);
         let mut random = ChaCha8Rng::seed_from_u64(0);
         choose(&self.rule, &mut random, &names, &rows, false)
     }
 
     /// Makes the pivot; says what left.
     fn exchange(&mut self, leaving: Candidate, c: usize, step: f64, tied: &[Candidate]) -> Variable {
-        let name = self.stand.name(&leaving);
-        self.driver = self.stand.exchange(&leaving, c, step, tied).unwrap_or(Slot::P);
+        let name = self.state.name(&leaving);
+        self.driver = self.state.exchange(&leaving, c, step, tied).unwrap_or(Slot::P);
         match name {
             Variable::W(k) => {
                 self.scheme.insert(k);
@@ -235,38 +235,38 @@ impl Parametric {
 
     /// t leaves: the path ends at the target, the dictionary stands on its answer and p is nonbasic again.
     fn settle(&mut self, c: usize, step: f64) {
-        if let Place::Row(r) = self.stand.dictionary.place(Slot::P) {
-            self.stand.pivot(r, c, step);
+        if let Place::Row(r) = self.state.dictionary.place(Slot::P) {
+            self.state.pivot(r, c, step);
         } else {
-            self.stand.dictionary.advance(&self.stand.column, step);
+            self.state.dictionary.advance(&self.state.column, step);
         }
         self.driver = Slot::P;
-        self.stand.fresh = false;
+        self.state.fresh = false;
     }
 
     /// The rate of t along the present column and its natural size; `None`: so far above the noise that its last digits
     /// decide nothing.
     fn faint_t_rate(&self, c: usize) -> Option<(f64, f64)> {
-        let stand = &self.stand;
+        let state = &self.state;
         if self.driver == Slot::P {
             return None;
         }
-        let rate = stand.dictionary.rate(Slot::P, c, &stand.column);
-        let size = stand.rate_size(Slot::P, stand.rate_total(c), 0.0);
+        let rate = state.dictionary.rate(Slot::P, c, &state.column);
+        let size = state.rate_size(Slot::P, state.rate_total(c), 0.0);
         (rate.abs() <= SUSPICIOUS * size).then_some((rate, size))
     }
 
     /// The rate of t along the present column, zero where it is noise. `recorded`: near the noise the direction at the
     /// last knot decides, its equations solved afresh; otherwise the column, which was refined before.
     fn t_rate(&self, c: usize, recorded: bool) -> f64 {
-        let stand = &self.stand;
+        let state = &self.state;
         let Some((faint, size)) = self.faint_t_rate(c) else {
-            return stand.dictionary.rate(Slot::P, c, &stand.column);
+            return state.dictionary.rate(Slot::P, c, &state.column);
         };
-        let entering = stand.variable(self.driver, false);
+        let entering = state.variable(self.driver, false);
         let rate = match entering {
             Variable::W(k) | Variable::Z(k) if recorded => {
-                direction(&stand.lcp, &self.knot_basis(k), entering).map_or(faint, |d| d.p)
+                direction(&state.lcp, &self.knot_basis(k), entering).map_or(faint, |d| d.p)
             }
             _ => faint,
         };
@@ -274,14 +274,14 @@ impl Parametric {
     }
 
     fn ray(&self, c: usize) -> RayDirection {
-        let mut ray = self.stand.ray(c);
+        let mut ray = self.state.ray(c);
         let entering = ray.entering;
         ray.p = 0.0;
         let row = match entering {
             Variable::W(k) | Variable::Z(k) => k,
             Variable::P => return ray,
         };
-        if let Some(fresh) = direction(&self.stand.lcp, &self.knot_basis(row), entering) {
+        if let Some(fresh) = direction(&self.state.lcp, &self.knot_basis(row), entering) {
             // The dictionary knows which entries are zero; the fresh solution knows their size.
             let keep = |mine: &mut [f64], fresh: &[f64]| {
                 for (mine, fresh) in mine.iter_mut().zip(fresh) {
@@ -299,7 +299,7 @@ impl Parametric {
     /// Follows the path; `observer` is called after every pivot with t and may break. At the target it stands on the
     /// LCP of the target.
     pub fn follow(&mut self, reach: Reach, observer: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Path {
-        let point = self.point_at(0.0).unwrap_or_else(|| self.stand.point());
+        let point = self.point_at(0.0).unwrap_or_else(|| self.state.point());
         let mut knots = Some(vec![Breakpoint {
             t: 0.0,
             point,
@@ -331,12 +331,12 @@ impl Parametric {
                 ControlFlow::Break(end) => break end,
                 ControlFlow::Continue(()) => pivots += 1,
             }
-            if observer(self.stand.dictionary.value_of(Slot::P)).is_break() {
+            if observer(self.state.dictionary.value_of(Slot::P)).is_break() {
                 break End::Interrupted;
             }
         };
         if end == End::Target {
-            let lcp = Arc::make_mut(&mut self.stand.lcp);
+            let lcp = Arc::make_mut(&mut self.state.lcp);
             lcp.q.axpy(reach.target, &lcp.covering, 1.0);
             for mirror in lcp.mirrors.iter_mut().flatten() {
                 mirror.constant += reach.target * mirror.covering;
@@ -354,7 +354,7 @@ impl Parametric {
     ) -> ControlFlow<End> {
         let lost = || ControlFlow::Break(End::Breakdown("the driving variable was lost".to_owned()));
         let singular = "the equations of the working scheme are singular";
-        if !self.stand.check_drift() {
+        if !self.state.check_drift() {
             return ControlFlow::Break(End::Breakdown(singular.to_owned()));
         }
         let Some(c) = self.fetch() else {
@@ -362,20 +362,20 @@ impl Parametric {
         };
         if self.faint_t_rate(c).is_some() {
             // A dictionary that is off would let rows block that do not fall at all.
-            if knots.is_some() && !self.stand.fresh && self.stand.refresh() {
-                self.stand.fetch(c);
+            if knots.is_some() && !self.state.fresh && self.state.refresh() {
+                self.state.fetch(c);
             }
-            self.stand.refine_column(c);
+            self.state.refine_column(c);
         }
         let (mut tied, mut step) = self.blocking(c);
         // Where the target comes before any row that blocks, no rate near the noise decides anything.
-        let raw = self.stand.dictionary.rate(Slot::P, c, &self.stand.column);
-        let ends_here = reach.target.is_finite() && raw > 0.0 && (reach.target - self.stand.p()).max(0.0) / raw <= step;
-        if !ends_here && self.stand.is_suspicious(c, &tied) && self.stand.refine_if_doubtful(c, &tied) {
+        let raw = self.state.dictionary.rate(Slot::P, c, &self.state.column);
+        let ends_here = reach.target.is_finite() && raw > 0.0 && (reach.target - self.state.p()).max(0.0) / raw <= step;
+        if !ends_here && self.state.is_suspicious(c, &tied) && self.state.refine_if_doubtful(c, &tied) {
             (tied, step) = self.blocking(c);
         }
         let t_rate = self.t_rate(c, knots.is_some());
-        let t = self.stand.dictionary.value_of(Slot::P);
+        let t = self.state.dictionary.value_of(Slot::P);
         if t_rate < 0.0 && step > 0.0 {
             if !reach.through {
                 return ControlFlow::Break(End::Turning);
@@ -393,7 +393,7 @@ impl Parametric {
                 return ControlFlow::Break(End::Target);
             }
         }
-        if tied.is_empty() || t_rate == 0.0 && self.stand.blocks_beyond_measure(c, &tied, step, BLURRED) {
+        if tied.is_empty() || t_rate == 0.0 && self.state.blocks_beyond_measure(c, &tied, step, BLURRED) {
             return ControlFlow::Break(if t_rate > 0.0 { End::Unbounded } else { End::Limit(self.ray(c)) });
         }
         let leaving = tied[self.choose(c, &tied)];
@@ -428,7 +428,7 @@ impl Parametric {
         let Some(knots) = knots else {
             return;
         };
-        let mut point = self.point_at(end).unwrap_or_else(|| self.stand.point());
+        let mut point = self.point_at(end).unwrap_or_else(|| self.state.point());
         point.p = end;
         knots.push(Breakpoint { t: end, point, leaving: Vec::new(), scheme: self.scheme.iter().copied().collect() });
     }

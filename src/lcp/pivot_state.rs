@@ -87,7 +87,7 @@ pub(crate) struct PivotState {
 
 impl PivotState {
     pub(crate) fn new(lcp: Arc<MirroredLcp>, dictionary: Dictionary, sizes: Sizes) -> PivotState {
-        let mut stand = PivotState {
+        let mut state = PivotState {
             primary: lcp.primary_rows(),
             lcp,
             dictionary,
@@ -100,8 +100,8 @@ impl PivotState {
             refreshes: 0,
             compared: 0,
         };
-        stand.measure_rows();
-        stand
+        state.measure_rows();
+        state
     }
 
     /// Takes another load.

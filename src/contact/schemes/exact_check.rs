@@ -239,14 +239,14 @@ pub fn exact_check(
         RationalSolution::Unlucky => return ended(Finding::Failed),
     };
 
-    let mut signs = Signs { system, forms: &forms, solution, told: 0, notable: Vec::new() };
+    let mut signs = Signs { system, forms: &forms, solution, determined: 0, notable: Vec::new() };
     for pair in 0..m {
         signs.pair(pair, scheme_of(pair));
         if progress(0.9 + 0.1 * (pair + 1) as f64 / m as f64).is_break() {
             return ended(Finding::Interrupted);
         }
     }
-    let signs_told = signs.told;
+    let determined = signs.determined;
     let joints = (0..system.joint_count()).map(|joint| {
         let (over, under) = signs.displacement(joint);
         ratio_to_f64(&over, &under)
@@ -257,7 +257,7 @@ pub fn exact_check(
         finding: if violations.is_empty() { Finding::Proved { zeros } } else { Finding::Refuted { violations } },
         polygon: problem.polygon,
         released,
-        signs: signs_told,
+        signs: determined,
         z,
     }
 }
@@ -266,7 +266,7 @@ struct Signs<'a> {
     system: &'a ContactSystem,
     forms: &'a Forms<'a>,
     solution: Quotients,
-    told: usize,
+    determined: usize,
     notable: Vec<ExactSign>,
 }
 
@@ -285,7 +285,7 @@ impl Signs<'_> {
 
     /// Determines the sign of over / under / scale, scale > 0, and keeps what is not positive.
     fn tell(&mut self, row: RowId, quantity: Quantity, (over, under): (BigInt, BigInt), scale: f64) {
-        self.told += 1;
+        self.determined += 1;
         if over.is_positive() {
             return;
         }
@@ -326,7 +326,7 @@ impl Signs<'_> {
             held.map(|facet| (facet, self.value(&self.forms.force(reserve(pair, facet))))).collect();
         // All reserves are zero: r_f = 0, and the slip is free in direction.
         if !slipping.is_empty() && reserves.iter().all(|(_, (over, _))| over.is_zero()) {
-            self.told += reserves.len() + slipping.len();
+            self.determined += reserves.len() + slipping.len();
             return;
         }
         for (facet, value) in reserves {

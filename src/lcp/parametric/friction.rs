@@ -12,8 +12,8 @@ const HOLDS: f64 = 1e-12;
 impl Parametric {
     /// Row of the normal force that the bound of row i depends on; `None` where there is none, and in an open pair.
     fn normal_row(&self, i: usize) -> Option<usize> {
-        let n = self.stand.lcp.mirrors[i].as_ref()?.normal?;
-        match self.stand.dictionary.place(Slot::W(n)) {
+        let n = self.state.lcp.mirrors[i].as_ref()?.normal?;
+        match self.state.dictionary.place(Slot::W(n)) {
             Place::Row(r) => Some(r),
             Place::Column(_) => None,
         }
@@ -31,7 +31,7 @@ impl Parametric {
         let mut pressed: Vec<usize> = Vec::new();
         let mut slipping: Vec<(usize, usize, Option<usize>)> = Vec::new();
         for i in 0..change.len() {
-            let Some(c) = self.stand.column_of(Slot::W(i)) else {
+            let Some(c) = self.state.column_of(Slot::W(i)) else {
                 continue;
             };
             let normal = self.normal_row(i).filter(|_| change[i] != 0.0);
@@ -42,8 +42,8 @@ impl Parametric {
         }
         // What one imposed unit on each slipping row does to the w_n of the pressed ones.
         let columns: Vec<usize> = slipping.iter().map(|&(_, c, _)| c).collect();
-        let influence = self.stand.dictionary.block(&pressed, &columns);
-        let (d, lcp) = (&self.stand.dictionary, &self.stand.lcp);
+        let influence = self.state.dictionary.block(&pressed, &columns);
+        let (d, lcp) = (&self.state.dictionary, &self.state.lcp);
         let start: Vec<f64> = pressed.iter().map(|&r| d.value[r]).collect();
         let size = start.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut normals = start.clone();
@@ -74,7 +74,7 @@ impl Parametric {
         let n = lcp.full_size;
         let mut point = Point { z: vec![0.0; n], w: vec![0.0; n], p: 0.0 };
         for (r, &local) in d.row.iter().enumerate() {
-            match self.stand.variable(local, false) {
+            match self.state.variable(local, false) {
                 Variable::Z(k) => point.z[k] = value[r],
                 Variable::W(k) => point.w[k] = value[r],
                 Variable::P => return None,
@@ -91,7 +91,7 @@ impl Parametric {
             };
             let sum = 2.0 * (mirror.friction + change[i]) * w_n + mirror.constant - 2.0 * extra[i];
             for (mirror_row, w) in [(false, own), (true, sum - own)] {
-                if let Variable::W(k) = self.stand.variable(Slot::W(i), mirror_row) {
+                if let Variable::W(k) = self.state.variable(Slot::W(i), mirror_row) {
                     point.w[k] = w;
                 }
             }

@@ -4,7 +4,7 @@ use super::facts::Facts;
 use super::value::NoValue;
 use crate::answer::record::{MemberForces, PairState};
 use crate::answer::stress::{Stress, StressPlace};
-use crate::fem::{MembraneStress, NodeStress};
+use crate::fem::{ElementStress, NodeStress};
 use crate::model::quantity::OfStress;
 use crate::model::structure::Structure;
 
@@ -17,7 +17,7 @@ pub struct Field<'a> {
     /// At the nodes of membranes.
     pub node_stresses: Vec<NodeStress>,
     /// At the centres of membranes.
-    pub element_stresses: Vec<MembraneStress>,
+    pub element_stresses: Vec<ElementStress>,
     /// Of the bars, element by element.
     pub members: &'a [MemberForces],
     /// The pairs, in the order of the structure.
@@ -47,7 +47,7 @@ impl Facts<'_> {
         Ok(main.node_stresses(structure, self.displacements()?, &self.factors))
     }
 
-    fn element_stresses(&self) -> Result<Vec<MembraneStress>, NoValue> {
+    fn element_stresses(&self) -> Result<Vec<ElementStress>, NoValue> {
         let (structure, main) = self.structure()?;
         Ok(main.element_stresses(structure, self.displacements()?, &self.factors))
     }
