@@ -25,6 +25,7 @@ pub(in crate::session) mod pivots;
 pub(in crate::session) mod plot_path;
 mod plot_structure;
 mod plot_traction;
+mod plot_zone;
 pub(in crate::session) mod plots;
 pub(in crate::session) mod prove;
 pub(in crate::session) mod quit;

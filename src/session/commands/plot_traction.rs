@@ -1,30 +1,20 @@
-//! `plot traction`: what the pairs of an edge or of a face carry, per length or area of it.
+//! Tractions: what the pairs of an edge or of a face carry, per length or area of it.
 
 use std::collections::HashSet;
 
 use serde::Serialize;
 
-use super::plots::{HEIGHT, STRUCTURE_HEIGHT, borrowed};
+use super::plot_zone::{Labelled, ZonePicture, borrowed, labelled};
 use crate::answer::record::PairState;
 use crate::model::structure::Dimension;
 use crate::model::tributary::tributary_lengths;
-use crate::session::{CommandError, Output, Session};
-use crate::view::plot::chart::Chart;
-use crate::view::plot::face_map::{FaceMap, tractions};
+use crate::session::{CommandError, Session};
+use crate::view::plot::face_map::tractions;
 use crate::view::plot::zone;
-
-/// Maps of the faces; states of the pairs that lie on edges, each with its title, and the length of edge of each of those
-/// pairs.
-pub(super) struct OnEdges {
-    figures: Vec<Tractions>,
-    pub(super) maps: Vec<FaceMap>,
-    pub(super) states: Vec<(String, Vec<PairState>)>,
-    pub(super) lengths: Vec<f64>,
-}
 
 /// Forces per length of edge, or per area of face.
 #[derive(Serialize)]
-struct Tractions {
+pub(super) struct Tractions {
     at: String,
     pairs: Vec<Traction>,
 }
@@ -48,38 +38,16 @@ impl Traction {
 }
 
 impl Session {
-    /// `plot traction`.
-    pub(super) fn plot_traction(
-        &self,
-        at: &[String],
-        height: Option<usize>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
-        let OnEdges { figures, maps, states, lengths } = self.traction_states(at)?;
-        io.show(&figures, |out, style| {
-            maps.iter().try_for_each(|map| map.write(out, height.unwrap_or(STRUCTURE_HEIGHT), style))?;
-            if lengths.is_empty() {
-                return Ok(());
-            }
-            let chart = zone::traction(&borrowed(&states), &lengths, &self.now.scenario.units);
-            Chart { height: height.unwrap_or(HEIGHT), ..chart }.write(out, style)
-        })?;
-        Ok(())
-    }
-
-    /// The pairs on edges, as [`Session::zone_states`], and the length of edge of each of them.
-    pub(super) fn traction_states(&self, at: &[String]) -> Result<OnEdges, CommandError> {
-        let all = self.zone_states(at)?;
-        let mut states = all.clone();
+    /// The tractions of each of these states, and their picture: maps of the faces, a chart of the pairs on edges.
+    pub(super) fn tractions(&self, all: &[Labelled]) -> Result<(Vec<Tractions>, ZonePicture), CommandError> {
+        let mut states = all.to_vec();
+        let units = &self.now.scenario.units;
         let sizes = self.structure().map(tributary_lengths).unwrap_or_default();
         let mut maps = Vec::new();
         if let Some(structure) = self.structure().filter(|structure| structure.dimension == Dimension::Space) {
             for (label, pairs) in &mut states {
-                let (mut found, rest) = tractions(structure, pairs, &sizes, &self.now.scenario.units);
-                for map in found.iter_mut().filter(|_| !label.is_empty()) {
-                    map.title.push_str(&format!(" · {label}"));
-                }
-                maps.extend(found);
+                let (found, rest) = tractions(structure, pairs, &sizes, units);
+                maps.extend(labelled(found, label));
                 *pairs = rest;
             }
         }
@@ -103,6 +71,7 @@ impl Session {
                     .into(),
             ));
         }
-        Ok(OnEdges { figures, maps, states, lengths })
+        let chart = (!lengths.is_empty()).then(|| zone::traction(&borrowed(&states), &lengths, units));
+        Ok((figures, ZonePicture { maps, chart }))
     }
 }

@@ -1,15 +1,11 @@
 //! `plot`: what is drawn of the state shown, and at which pivots.
 
 use clap::{Args, ValueEnum};
-use serde::Serialize;
 
 use crate::answer::diagram::Internal;
-use crate::answer::record::{PairState, PivotRecord};
-use crate::model::structure::Dimension;
-use crate::view::plot::chart::Chart;
-use crate::view::plot::face_map::{self, FaceMap};
+use crate::answer::record::PivotRecord;
 use crate::view::plot::trace;
-use crate::view::plot::zone::{self, Quantity};
+use crate::view::plot::zone::Quantity;
 
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
@@ -162,11 +158,11 @@ impl Session {
             )))
         } else {
             match picture {
-                Picture::Slip => self.plot_zone(Quantity::Slip, at, height, io),
-                Picture::Force => self.plot_zone(Quantity::Force, at, height, io),
-                Picture::Gap => self.plot_zone(Quantity::Gap, at, height, io),
-                Picture::Pressure => self.plot_zone(Quantity::Pressure, at, height, io),
-                Picture::Traction => self.plot_traction(at, height, io),
+                Picture::Slip => self.plot_zone(Some(Quantity::Slip), at, height, io),
+                Picture::Force => self.plot_zone(Some(Quantity::Force), at, height, io),
+                Picture::Gap => self.plot_zone(Some(Quantity::Gap), at, height, io),
+                Picture::Pressure => self.plot_zone(Some(Quantity::Pressure), at, height, io),
+                Picture::Traction => self.plot_zone(None, at, height, io),
                 _ if !at.is_empty() => Err(CommandError::Refused(
                     "plot: `--at` belongs to slip, force, gap, pressure and traction; use `step` for the others".into(),
                 )),
@@ -186,88 +182,6 @@ impl Session {
         result
     }
 
-    fn plot_zone(
-        &self,
-        quantity: Quantity,
-        at: &[String],
-        height: Option<usize>,
-        io: &mut Output<'_>,
-    ) -> Result<(), CommandError> {
-        let states = self.zone_states(at)?;
-        let shown: Vec<AtPivot<'_>> = states.iter().map(|(at, pairs)| AtPivot { at, pairs }).collect();
-        io.show(&shown, |out, style| {
-            let (maps, states) = self.faces(quantity, &states);
-            for map in &maps {
-                map.write(out, height.unwrap_or(STRUCTURE_HEIGHT), style)?;
-            }
-            if !states.is_empty() {
-                let chart = zone::drawing(quantity, &borrowed(&states), &self.now.scenario.units);
-                Chart { height: height.unwrap_or(HEIGHT), ..chart }.write(out, style)?;
-            }
-            Ok(())
-        })?;
-        Ok(())
-    }
-
-    /// The maps of faces, state by state, and the states of the pairs that lie on none.
-    pub(in crate::session) fn faces(
-        &self,
-        quantity: Quantity,
-        states: &[(String, Vec<PairState>)],
-    ) -> (Vec<FaceMap>, Vec<(String, Vec<PairState>)>) {
-        let Some(structure) = self.structure().filter(|structure| structure.dimension == Dimension::Space) else {
-            return (Vec::new(), states.to_vec());
-        };
-        let (mut maps, mut rest) = (Vec::new(), Vec::new());
-        for (label, pairs) in states {
-            let (mut found, others) = face_map::faces(structure, pairs, quantity, &self.now.scenario.units);
-            for map in found.iter_mut().filter(|_| !label.is_empty()) {
-                map.title.push_str(&format!(" · {label}"));
-            }
-            maps.extend(found);
-            rest.extend(Some((label.clone(), others)).filter(|(_, others)| !others.is_empty()));
-        }
-        (maps, rest)
-    }
-
-    /// The pairs that a plot over the contact zone shows, each with its title: those shown, or those at some pivots.
-    pub(in crate::session) fn zone_states(&self, at: &[String]) -> Result<Vec<(String, Vec<PairState>)>, CommandError> {
-        let answer = self.need_quantities()?;
-        if answer.pairs.is_empty() {
-            return Err(CommandError::Refused("nothing to plot: there are no contact pairs in this answer".into()));
-        }
-        if at.is_empty() {
-            return Ok(vec![(self.shown_place().unwrap_or_default(), self.quantity_pairs())]);
-        }
-        let answer = self.need_answer()?;
-        let last = answer.pivot_count.checked_sub(1);
-        at.iter().map(|word| self.pairs_named(word, last)).collect()
-    }
-
-    /// The pairs at a pivot named `first`, `last` or by its number.
-    fn pairs_named(&self, word: &str, last: Option<usize>) -> Result<(String, Vec<PairState>), CommandError> {
-        let (Some(solved), Some(prepared), Some(last)) = (&self.solved, &self.now.prepared, last) else {
-            return Err(CommandError::Refused(
-                "plot: no pivots to choose with `--at`: the main system is the answer".into(),
-            ));
-        };
-        let step = match word {
-            "first" => 0,
-            "last" => last,
-            _ => word.parse().ok().filter(|step| *step <= last).ok_or_else(|| {
-                CommandError::Refused(format!("plot: no pivot `{word}`; expected first, last or 0 … {last}"))
-            })?,
-        };
-        let pairs = if step == last {
-            solved.answer.pairs.clone()
-        } else {
-            solved
-                .pairs_at(prepared, step)
-                .ok_or_else(|| CommandError::Refused(format!("plot: pivot {step} cannot be shown")))?
-        };
-        Ok((format!("pivot {step}"), pairs))
-    }
-
     fn plot_p(&self, height: Option<usize>, io: &mut Output<'_>) -> Result<(), CommandError> {
         let pivots = self.some_pivots()?;
         let points: Vec<(usize, f64)> = pivots.iter().map(|pivot| (pivot.step, pivot.p)).collect();
@@ -285,15 +199,4 @@ impl Session {
         }
         Ok(pivots)
     }
-}
-
-/// The pairs at a pivot.
-#[derive(Serialize)]
-struct AtPivot<'a> {
-    at: &'a str,
-    pairs: &'a [PairState],
-}
-
-pub(super) fn borrowed(states: &[(String, Vec<PairState>)]) -> Vec<(&str, &[PairState])> {
-    states.iter().map(|(label, pairs)| (label.as_str(), pairs.as_slice())).collect()
 }

@@ -7,15 +7,14 @@ use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::OutcomeKind;
 use crate::export::atomic;
 use crate::session::commands::plot_structure::Shape;
-use crate::session::commands::plot_traction::OnEdges;
-use crate::session::commands::plots::borrowed;
+use crate::session::commands::plot_zone::ZonePicture;
 use crate::session::{CommandError, Session};
 use crate::text::number::{heading, short, with_unit};
 use crate::view::members::extremes;
 use crate::view::plot::chart::Chart;
 use crate::view::plot::scene::Scene;
 use crate::view::plot::zone::Quantity;
-use crate::view::plot::{diagram, trace, zone};
+use crate::view::plot::{diagram, trace};
 use crate::view::svg::{self, Caption};
 use crate::watch::Watch;
 
@@ -40,28 +39,14 @@ impl Session {
     pub(super) fn figure(&self, what: Exported, of: &[String], watch: &dyn Watch) -> Result<String, CommandError> {
         let units = &self.now.scenario.units;
         let zone = |quantity| -> Result<String, CommandError> {
-            let states = self.zone_states(of)?;
-            let (maps, states) = self.faces(quantity, &states);
-            let chart = || zone::drawing(quantity, &borrowed(&states), units);
-            if maps.is_empty() {
-                return Ok(self.chart_figure(&chart(), ""));
-            }
-            let beside = (!states.is_empty()).then(chart);
-            Ok(svg::face_map::figure(&maps, beside.as_ref(), &self.about()))
+            Ok(self.zone_figure(&self.zone_picture(quantity, &self.zone_states(of)?)))
         };
         match what {
             Exported::Slip => zone(Quantity::Slip),
             Exported::Force => zone(Quantity::Force),
             Exported::Gap => zone(Quantity::Gap),
             Exported::Pressure => zone(Quantity::Pressure),
-            Exported::Traction => {
-                let OnEdges { maps, states, lengths, .. } = self.traction_states(of)?;
-                let chart = (!lengths.is_empty()).then(|| zone::traction(&borrowed(&states), &lengths, units));
-                Ok(match chart {
-                    Some(chart) if maps.is_empty() => self.chart_figure(&chart, ""),
-                    chart => svg::face_map::figure(&maps, chart.as_ref(), &self.about()),
-                })
-            }
+            Exported::Traction => Ok(self.zone_figure(&self.tractions(&self.zone_states(of)?)?.1)),
             Exported::P => Ok(self.chart_figure(&trace::drawing(self.some_pivots()?, self.position, units), "")),
             Exported::Path => {
                 let end = &self.need_path()?.end;
@@ -88,6 +73,13 @@ impl Session {
 
     fn chart_figure(&self, chart: &Chart, note: &str) -> String {
         svg::chart::figure(chart, &self.about(), note)
+    }
+
+    fn zone_figure(&self, picture: &ZonePicture) -> String {
+        match &picture.chart {
+            Some(chart) if picture.maps.is_empty() => self.chart_figure(chart, ""),
+            chart => svg::face_map::figure(&picture.maps, chart.as_ref(), &self.about()),
+        }
     }
 
     fn shape_figure(&self, shape: &Shape<'_>) -> Result<String, CommandError> {

@@ -175,7 +175,7 @@ impl Session {
             (Exported::Slip, "slip", slips),
             (Exported::Force, "force", rubs),
             (Exported::Pressure, "pressure", !pairs.is_empty()),
-            (Exported::Traction, "traction", self.traction_states(&[]).is_ok()),
+            (Exported::Traction, "traction", self.zone_states(&[]).and_then(|states| self.tractions(&states)).is_ok()),
             (Exported::Moment, "moment", any(&["M", "Q", "Mz", "Vy"])),
             (Exported::MomentY, "moment M_y", any(&["My", "Vz"])),
             (Exported::Torsion, "torque", any(&["T"])),
