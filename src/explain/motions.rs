@@ -19,6 +19,17 @@ const EIGENVECTOR: f64 = 1e-6;
 /// A sum below this multiple of the magnitudes of its terms is zero.
 const ZERO: f64 = 8.0 * f64::EPSILON;
 
+/// An entry of a motion below this share of its largest is rounding.
+const ROUNDING: f64 = 1e-11;
+
+/// A motion over the joints scaled to largest 1, without what is rounding; a motion of zeros as it is.
+pub fn direction_of(motion: DVector<f64>) -> DVector<f64> {
+    let largest = motion.amax();
+    let scaled = if largest > 0.0 { motion / largest } else { motion };
+    // What is rounding becomes 0, never −0.
+    scaled.map(|z| if z.abs() <= ROUNDING { 0.0 } else { z })
+}
+
 /// The part of one motion in the displacement of one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {

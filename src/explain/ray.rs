@@ -10,7 +10,7 @@ use super::certificate::certify;
 use super::kernel::releasable_kernel;
 use super::misfit::{Misfit, misfit};
 use super::mode::{Mode, mode, pair_words};
-use super::motions::FreeMotions;
+use super::motions::{FreeMotions, direction_of};
 use super::proof::{BUDGET, Certificate};
 use super::remedy::digits;
 use super::sliding::sliding;
@@ -111,10 +111,7 @@ pub fn classify(
             return (DVector::zeros(system.joint_count()), RayClass::Artefact, pair);
         }
     }
-    let largest = joints.amax();
-    let mut direction = if largest > 0.0 { joints / largest } else { joints };
-    // Entries that are rounding noise; 0 − 0 leaves no −0 in results.
-    direction.iter_mut().filter(|z| z.abs() <= 1e-11).for_each(|z| *z = 0.0);
+    let direction = direction_of(joints);
     let kernel = releasable_kernel(system);
     if kernel.ncols() == 0 {
         // Joints that repeat one another may demand what no displacement gives: then no answer need exist.

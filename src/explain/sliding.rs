@@ -13,6 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::kernel::releasable_kernel;
 use super::mode::STILL;
+use super::motions::direction_of;
 use crate::contact::on_cone::widest_cone_pairs;
 use crate::contact::problem::ContactProblem;
 
@@ -49,13 +50,11 @@ pub fn sliding(problem: &ContactProblem, motion: &DVector<f64>) -> Option<DVecto
         }
     }
     let mut left = &kernel * amounts;
-    let largest = left.amax();
-    if largest <= still {
+    if left.amax() <= still {
         return None;
     }
-    left /= largest;
+    left = direction_of(left);
     closed.iter().for_each(|&pair| left[pair] = 0.0);
-    left.iter_mut().filter(|z| z.abs() <= 1e-11).for_each(|z| *z = 0.0);
     let parts_or_stays = (0..pairs.len()).all(|pair| pairs[pair].law.is_bilateral() || left[pair] >= -STILL);
     let (load, terms) = (&problem.load, &problem.load_terms);
     let [load, terms] = [load, terms].map(|load| problem.system.forces_of(load));
