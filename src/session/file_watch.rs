@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
+use super::shared::is_same;
 use crate::model::scenario::Scenario;
 use crate::text::file;
 use crate::text::hash::Hash;
@@ -150,12 +151,7 @@ impl FileWatch {
     /// scenario already is news.
     pub fn aim(&self, scenario: Option<Arc<Scenario>>) {
         let mut aim = self.0.aim.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = match (&aim.scenario, &scenario) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        };
-        if same {
+        if is_same(&aim.scenario, &scenario) {
             return;
         }
         aim.looks = scenario.as_deref().map(looks).unwrap_or_default();

@@ -22,6 +22,7 @@ mod run;
 mod save;
 pub mod script;
 mod setup;
+pub mod shared;
 mod start;
 pub mod worker;
 

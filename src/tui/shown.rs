@@ -8,6 +8,7 @@ use crate::model::scenario::{Scenario, Source, Stage};
 use crate::model::structure::Structure;
 use crate::session::language::complete::Vocabulary;
 use crate::session::results::{Answer, NodeDisplacement, PairState, PlainSolution, RayClass, Start};
+use crate::session::shared::is_same;
 use crate::session::{DrawnMap, Glance, History, Prepared, Remedies, Session, Solved};
 use crate::view::difference::{self, Change};
 use crate::view::plot::scene::{Magnification, factor, nodal};
@@ -212,25 +213,15 @@ impl Shown {
 
     /// Whether the structure of both is one, with the same places of its nodes.
     fn has_structure_of(&self, other: &Shown) -> bool {
-        match (&self.prepared, &other.prepared) {
-            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
-            (None, None) => Arc::ptr_eq(&self.scenario, &other.scenario),
-            _ => false,
-        }
+        let is_prepared = self.prepared.is_some();
+        is_same(&self.prepared, &other.prepared) && (is_prepared || Arc::ptr_eq(&self.scenario, &other.scenario))
     }
 
     fn is_same_moment(&self, other: &Shown) -> bool {
-        fn same<T>(a: &Option<Arc<T>>, b: &Option<Arc<T>>) -> bool {
-            match (a, b) {
-                (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-                (None, None) => true,
-                _ => false,
-            }
-        }
         self.solved.is_some()
-            && same(&self.solved, &other.solved)
-            && same(&self.previous, &other.previous)
-            && same(&self.history, &other.history)
+            && is_same(&self.solved, &other.solved)
+            && is_same(&self.previous, &other.previous)
+            && is_same(&self.history, &other.history)
             && (self.position, self.stage) == (other.position, other.stage)
             && self.glance == other.glance
     }
