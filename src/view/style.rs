@@ -187,7 +187,8 @@ impl Style {
     /// An error as it is shown, its lines kept.
     pub fn error(&self, message: &str) -> String {
         let lines: Vec<String> = message.lines().map(|line| self.text(line)).collect();
-        format!("{} {}", self.paint(Role::Bad, "error:"), lines.join("\n"))
+        let gap = if lines.first().is_some_and(String::is_empty) { "" } else { " " };
+        format!("{}{gap}{}", self.paint(Role::Bad, "error:"), lines.join("\n"))
     }
 
     /// The same for a reader at a terminal: lines that do not fit are broken between words.
@@ -201,8 +202,9 @@ impl Style {
             }
             let indent = " ".repeat(line.len() - line.trim_start().len());
             let mut lines = self.wrap(&format!("{label}{line}"), self.width.saturating_sub(indent.len()));
+            // A word as wide as the line goes on beneath the label, which is alone in its line then.
             if let Some(first) = lines.first_mut() {
-                *first = first.strip_prefix(label).unwrap_or(first).to_owned();
+                *first = first.strip_prefix(label.trim_end()).unwrap_or(first).trim_start().to_owned();
             }
             lines.into_iter().map(|line| format!("{indent}{line}")).collect()
         };
@@ -314,5 +316,9 @@ mod tests {
             ]
         );
         assert_eq!(style.error_in_lines("short\nlines"), style.error("short\nlines"));
+        // 29 letters fit into a line, but not beside the label
+        let long = "x".repeat(29);
+        assert_eq!(style.error_in_lines(&long), format!("error:\n{long}"));
+        assert_eq!(style.error_in_lines(&format!("{long} is long")), format!("error:\n{long}\nis long"));
     }
 }

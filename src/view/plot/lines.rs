@@ -119,7 +119,8 @@ impl<'a> Displaced<'a> {
     fn all_lines(&self) -> Vec<Vec<Seen>> {
         let structure = self.structure;
         let Move { u, factors, by } = self.moved;
-        let curves = self.skeleton.bends().then(|| ElasticCurves::of(structure, factors)).filter(|_| by != 0.0);
+        let is_bent = by != 0.0 && self.skeleton.bends();
+        let curves = is_bent.then(|| ElasticCurves::of(structure, factors));
         let shares = self.skeleton.shares();
         let mut lines = Vec::new();
         let mut single = |elements: Range<usize>| {
