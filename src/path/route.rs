@@ -89,7 +89,7 @@ impl<'a> Route<'a> {
         upper: bool,
         solve: Start<'_>,
     ) -> Result<Option<Route<'a>>, PathError> {
-        if case.prepared.system().is_some_and(|system| system.is_in_space()) && !leads(case.prepared, case.rules) {
+        if case.prepared.is_in_space() && !leads(case.prepared, case.rules) {
             return Ok(None);
         }
         let mut route = Route { case, name: name.to_owned(), legs: Vec::new(), stretches: Vec::new() };

@@ -35,7 +35,7 @@ impl Way {
     /// See [`PathError`].
     pub fn reach(case: Case<'_>, solved: &Solved, name: &str, reach: LoadReach) -> Result<Way, PathError> {
         let solved = Some(solved);
-        let in_space = case.prepared.system().is_some_and(|system| system.is_in_space());
+        let in_space = case.prepared.is_in_space();
         let to = reach.to.unwrap_or(FRICTION);
         Ok(match (is_friction(case, name), in_space) {
             (true, false) => Way::Friction(Box::new(friction::trace(case, solved, name, to)?)),

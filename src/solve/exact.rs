@@ -29,7 +29,7 @@ impl Prepared {
     /// stiffness contrasts no elimination in f64 gives its z. The exact z, rounded once, is then checked as any other.
     pub(super) fn prove_after_all(&self, solved: &mut Solved, watch: &dyn Watch) {
         // In space the scheme is the polygon's, not that of the answer on the cone.
-        if self.system().is_some_and(|system| system.is_in_space()) {
+        if self.is_in_space() {
             return;
         }
         // Only figures of the size of rounding are worth the proof.

@@ -391,4 +391,9 @@ impl Prepared {
             Geometry::Plain { .. } => None,
         }
     }
+
+    /// Whether pairs slip in a plane of directions.
+    pub fn is_in_space(&self) -> bool {
+        self.system().is_some_and(|system| system.is_in_space())
+    }
 }

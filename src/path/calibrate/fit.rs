@@ -137,7 +137,7 @@ impl Model<'_> {
     /// The sum of squares over one friction alone on its exact path; `None` where none leads over it.
     pub(super) fn along(&self, at: &[f64], group: usize) -> Result<Option<Along>, PathError> {
         // In space slips turn, and no exact path leads over friction: rates and answers of their own have to do.
-        if self.case.prepared.system().is_some_and(|system| system.is_in_space()) {
+        if self.case.prepared.is_in_space() {
             return Ok(None);
         }
         let (name, range) = &self.groups[group];

@@ -20,7 +20,7 @@ use crate::solve::{Case, Solved};
 /// See [`PathError`].
 pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limit, PathError> {
     let negative = case.present(name).is_some_and(|present| present < 0.0);
-    if case.prepared.system().is_some_and(|system| system.is_in_space()) {
+    if case.prepared.is_in_space() {
         return limit_by_runs(case, name);
     }
     let to = negative.then_some(f64::NEG_INFINITY);

@@ -163,14 +163,10 @@ fn along(case: Case<'_>, axes: &[Axis; 2]) -> Result<usize, PathError> {
     Ok(best.0)
 }
 
-/// Whether pairs slip in a plane of directions: all answers could be found for a polygon only.
-fn is_in_space(case: Case<'_>) -> bool {
-    case.prepared.system().is_some_and(|system| system.is_in_space())
-}
-
 /// How other answers are to be looked for.
 fn others(case: Case<'_>, axes: &[Axis; 2]) -> Result<Others, PathError> {
-    if is_in_space(case) {
+    // In space all answers could be found for a polygon only.
+    if case.prepared.is_in_space() {
         return Ok(Others::FromAbove);
     }
     let pairs = case.prepared.system().map_or(0, |system| system.pairs.len());
@@ -227,7 +223,7 @@ impl Map {
             .system()
             .map(|system| system.pairs.iter().map(|pair| pair.id.clone()).collect())
             .unwrap_or_default();
-        let enumerated = ids.len() <= ENUMERATED_PAIRS && count <= ENUMERATED_REGIONS && !is_in_space(case);
+        let enumerated = ids.len() <= ENUMERATED_PAIRS && count <= ENUMERATED_REGIONS && !case.prepared.is_in_space();
         for region in 0..count {
             case.watch.progress(&format!("region {} of {count}", region + 1), region as f64 / count as f64);
             let mut area = 0.0;
@@ -331,7 +327,7 @@ impl Map {
             ));
         }
         let counted = match pairs > ENUMERATED_PAIRS || self.regions.len() > ENUMERATED_REGIONS {
-            _ if is_in_space(case) => "; in space they are not counted".to_owned(),
+            _ if case.prepared.is_in_space() => "; in space they are not counted".to_owned(),
             true => format!(
                 "; at the marked places all of them are counted for up to {ENUMERATED_PAIRS} pairs and {ENUMERATED_REGIONS} \
                  regions only"

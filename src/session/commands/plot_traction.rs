@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::plot_zone::{Labelled, ZonePicture, borrowed, labelled};
 use crate::answer::record::PairState;
-use crate::model::structure::Dimension;
 use crate::model::tributary::tributary_lengths;
 use crate::session::{CommandError, Session};
 use crate::view::plot::face_map::tractions;
@@ -44,7 +43,7 @@ impl Session {
         let units = &self.now.scenario.units;
         let sizes = self.structure().map(tributary_lengths).unwrap_or_default();
         let mut maps = Vec::new();
-        if let Some(structure) = self.structure().filter(|structure| structure.dimension == Dimension::Space) {
+        if let Some(structure) = self.structure() {
             for (label, pairs) in &mut states {
                 let (found, rest) = tractions(structure, pairs, &sizes, units);
                 maps.extend(labelled(found, label));

@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::plots::{HEIGHT, STRUCTURE_HEIGHT};
 use crate::answer::record::PairState;
-use crate::model::structure::Dimension;
 use crate::session::{CommandError, Output, Session};
 use crate::view::plot::chart::Chart;
 use crate::view::plot::face_map::{self, FaceMap};
@@ -61,7 +60,7 @@ impl Session {
     pub(super) fn zone_picture(&self, quantity: Quantity, states: &[Labelled]) -> ZonePicture {
         let units = &self.now.scenario.units;
         let (mut maps, mut rest) = (Vec::new(), Vec::new());
-        match self.structure().filter(|structure| structure.dimension == Dimension::Space) {
+        match self.structure() {
             None => rest = states.to_vec(),
             Some(structure) => {
                 for (label, pairs) in states {

@@ -4,7 +4,6 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use crate::model::structure::Dimension;
 use crate::session::diagram::Internal;
 use crate::session::results::PairState;
 use crate::tui::app::State;
@@ -100,7 +99,7 @@ fn lines(state: &State, plot: Plot, area: Rect) -> Vec<Line<'static>> {
             report(state.look, width, |out, style| zone::write(out, quantity, states, units, height, style))
         })
     };
-    if let Some(structure) = shown.structure().filter(|structure| structure.dimension == Dimension::Space) {
+    if let Some(structure) = shown.structure() {
         let (maps, rest) = faces(structure, shown.pairs(), quantity, units);
         if !maps.is_empty() {
             let (above, below) = beside(area, &maps, &rest);

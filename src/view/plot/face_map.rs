@@ -56,14 +56,14 @@ pub struct FaceMap {
     quantity: Quantity,
 }
 
-/// The faces among the contacts of a structure in space, each with this quantity, and the pairs that are on none.
+/// The faces among the contacts of a structure, each with this quantity, and the pairs that are on none: in the plane all.
 pub fn faces(
     structure: &Structure,
     states: &[PairState],
     quantity: Quantity,
     units: &Units,
 ) -> (Vec<FaceMap>, Vec<PairState>) {
-    let (mut maps, mut rest) = (Vec::new(), Vec::new());
+    let (mut maps, mut on_no_face) = (Vec::new(), Vec::new());
     // those of a face are `joint[0]`, `joint[1]` …; a contact of a single node is not a face
     let mut contacts: Vec<(Option<&str>, Vec<usize>)> = Vec::new();
     for (index, state) in states.iter().enumerate() {
@@ -76,10 +76,11 @@ pub fn faces(
     for (name, pairs) in contacts {
         match name.and_then(|_| FaceMap::of(structure, states, &pairs, quantity, units)) {
             Some(map) => maps.push(map),
-            None => rest.extend(pairs.into_iter().map(|pair| states[pair].clone())),
+            None => on_no_face.extend(pairs),
         }
     }
-    (maps, rest)
+    on_no_face.sort_unstable();
+    (maps, on_no_face.into_iter().map(|pair| states[pair].clone()).collect())
 }
 
 /// What the pairs of each face carry per area, normal and tangential; `areas` are those of the pairs.
