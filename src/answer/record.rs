@@ -10,7 +10,7 @@ pub use super::pair_record::{InSpace, PairState, State};
 pub use super::ray_record::{Direction, PairDirection, Ray, RayClass, Slip, VariableRate, Verdict};
 use crate::contact::polygon::Polygon;
 use crate::fem::Piece;
-use crate::model::dimension::Dimension;
+use crate::model::structure::{Dimension, Structure};
 use crate::model::uses::Redone;
 use crate::model::vector::length;
 
@@ -94,10 +94,19 @@ pub struct NodeDisplacement {
 }
 
 impl NodeDisplacement {
-    /// From the displacements of a node by component.
-    pub fn of(dimension: Dimension, node: &str, [ux, uy, uz, rx, ry, rz]: [f64; 6]) -> NodeDisplacement {
-        let space = (dimension == Dimension::Space).then_some([uz, rx, ry]);
-        NodeDisplacement { node: node.to_owned(), ux, uy, rz, space }
+    /// Of all nodes of a structure, whose displacements these are by component.
+    pub fn of_nodes(structure: &Structure, u: &[[f64; 6]]) -> Vec<NodeDisplacement> {
+        let in_space = structure.dimension == Dimension::Space;
+        let nodes = structure.nodes.iter().map(|node| node.id.clone()).zip(u);
+        nodes
+            .map(|(node, &[ux, uy, uz, rx, ry, rz])| NodeDisplacement {
+                node,
+                ux,
+                uy,
+                rz,
+                space: in_space.then_some([uz, rx, ry]),
+            })
+            .collect()
     }
 
     /// (u_x, u_y, u_z, r_x, r_y, r_z), lengths and radians.

@@ -18,7 +18,7 @@ use crate::contact::written::ContactLcp;
 use crate::fem::Displacements;
 use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::pivot::Cycle;
-use crate::model::structure::{Dimension, Structure};
+use crate::model::structure::Dimension;
 use crate::model::uses::Redone;
 use crate::model::vector::dot;
 use crate::text::words::{list, short};
@@ -65,7 +65,7 @@ impl Prepared {
                 Some(compatibility + main.equilibrium_residual(structure, &u, &state.force, &problem.factors));
             answer.members = self.members(&u, &problem.factors);
             answer.reactions = self.reactions(&u, &state.force, &problem.factors);
-            answer.displacements = Some(named(structure, &u));
+            answer.displacements = Some(NodeDisplacement::of_nodes(structure, &u.0));
         }
         equilibrium
     }
@@ -222,10 +222,6 @@ fn notes_on_shared_forces(problem: &ContactProblem, state: &JointState) -> Vec<S
 
 fn end_forces(dimension: Dimension, [n, q, m, vz, my, t]: [f64; 6]) -> EndForces {
     EndForces { n, q, m, space: (dimension == Dimension::Space).then_some([vz, my, t]) }
-}
-
-pub(super) fn named(structure: &Structure, u: &Displacements) -> Vec<NodeDisplacement> {
-    structure.nodes.iter().zip(&u.0).map(|(node, u)| NodeDisplacement::of(structure.dimension, &node.id, *u)).collect()
 }
 
 /// Takes over the check, and says what holds open pairs.

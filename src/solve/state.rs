@@ -3,7 +3,6 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use super::finish::named;
 use super::prepared::{Geometry, Prepared};
 use super::warm::WarmSlot;
 use crate::answer::pairs::{JointState, joint_state, pair_states};
@@ -179,7 +178,8 @@ impl Solved {
             return None;
         };
         let state = self.state_at(step)?;
-        Some(named(structure, &main.displacements(&problem.factors, &problem.dislocation(&state.z))))
+        let u = main.displacements(&problem.factors, &problem.dislocation(&state.z));
+        Some(NodeDisplacement::of_nodes(structure, &u.0))
     }
 
     /// z and w of a bare LCP after pivot `step`.

@@ -169,12 +169,7 @@ impl Session {
             .ok_or_else(|| {
                 CommandError::Refused("no mode to draw: the run did not end in a motion that costs no energy".into())
             })?;
-        let displacements = structure
-            .nodes
-            .iter()
-            .zip(&mode.displacements)
-            .map(|(node, u)| NodeDisplacement::of(structure.dimension, &node.id, *u))
-            .collect();
+        let displacements = NodeDisplacement::of_nodes(structure, &mode.displacements);
         let title = format!("{}: collapse mode", self.short_name());
         let viewpoint = self.viewpoint;
         Ok(Shape { title, structure, displacements: Some(displacements), factors: &[], viewpoint, pairs: None })

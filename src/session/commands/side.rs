@@ -66,8 +66,7 @@ fn mode_of(prepared: &Prepared, solved: &Solved) -> Option<Vec<NodeDisplacement>
         return None;
     }
     let u = main.displacements(&vec![0.0; prepared.cases.len()], &z);
-    let nodes = structure.nodes.iter().zip(&u.0);
-    Some(nodes.map(|(node, u)| NodeDisplacement::of(structure.dimension, &node.id, *u)).collect())
+    Some(NodeDisplacement::of_nodes(structure, &u.0))
 }
 
 /// Most pairs whose answers are shown side by side.
