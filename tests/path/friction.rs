@@ -29,7 +29,7 @@ fn follow(name: &str, from: f64, to: f64) -> FrictionPath {
     trace(prepared.case(&scenario, &values), Some(&solved), "f", to).expect("a path")
 }
 
-/// Validation 12, computed independently.
+/// The ends of the intervals come from frame elements and an enumeration of the working schemes, independent of this program.
 #[test]
 fn the_frames_hold_their_schemes_in_the_known_intervals() {
     for (name, expected) in

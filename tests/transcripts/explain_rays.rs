@@ -36,7 +36,7 @@ fn close(found: f64, expected: f64, relative: f64) {
     assert!((found - expected).abs() <= relative * expected.abs(), "{found} instead of {expected}");
 }
 
-/// Validation 4: overturns at H = 0.25 (f = 0.4), slides at H = f W (f = 0.2).
+/// It overturns at H = 0.25 (f = 0.4), slides at H = f W (f = 0.2).
 #[test]
 fn block_on_a_rough_plane() {
     let block = load("block");
@@ -78,7 +78,7 @@ fn block_on_a_rough_plane() {
     }
 }
 
-/// Validation 5: slides at T = 200 f, overturns at T = 400.
+/// It slides at T = 200 f and overturns at T = 400.
 #[test]
 fn upper_plate_on_the_lower_one() {
     let plates = load("plates-slide");
