@@ -46,7 +46,7 @@ impl Kinematics {
         &self.motions
     }
 
-    /// Whether there are surely no others: [`LooseMotions::are_all`].
+    /// Whether there are surely no others: [`super::loose::LooseMotions::are_all`].
     pub fn is_complete(&self) -> bool {
         self.complete
     }
