@@ -28,7 +28,8 @@ impl From<FaerError> for AnalysisError {
     }
 }
 
-/// Order of elimination by approximate minimum degree, of a symmetric pattern by columns (`start`, `rows`) without duplicates.
+/// Order of elimination by approximate minimum degree, of a symmetric pattern by columns (`start`, `rows`) without
+/// duplicates.
 ///
 /// # Errors
 /// Out of memory.

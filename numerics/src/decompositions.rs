@@ -47,9 +47,7 @@ pub fn symmetric_eigen(a: &DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
 
 /// Smallest eigenvalue of a symmetric matrix; `None` if the iteration did not converge.
 pub fn smallest_eigenvalue(matrix: &DMatrix<f64>) -> Option<f64> {
-    let n = matrix.nrows();
-    let view = MatRef::from_column_major_slice(matrix.as_slice(), n, n);
-    view.self_adjoint_eigenvalues(Side::Lower).ok()?.first().copied()
+    view(matrix).self_adjoint_eigenvalues(Side::Lower).ok()?.first().copied()
 }
 
 /// Largest eigenvalue of a symmetric positive semidefinite matrix, from below, by the power method. Ten steps give
@@ -87,8 +85,7 @@ pub struct Cholesky(Llt<f64>);
 impl Cholesky {
     /// `None` where a pivot is not positive.
     pub fn new(matrix: &DMatrix<f64>) -> Option<Cholesky> {
-        let n = matrix.nrows();
-        MatRef::from_column_major_slice(matrix.as_slice(), n, n).llt(Side::Lower).ok().map(Cholesky)
+        view(matrix).llt(Side::Lower).ok().map(Cholesky)
     }
 
     /// right := matrix⁻¹ right.
@@ -107,18 +104,16 @@ pub struct Factor {
 impl Factor {
     /// Factorizes; a singular matrix shows as non-finite or failing solutions (`solve` returns `None`).
     pub fn new(matrix: DMatrix<f64>) -> Factor {
-        let n = matrix.nrows();
-        let view = MatRef::from_column_major_slice(matrix.as_slice(), n, n);
-        Factor { lu: view.partial_piv_lu(), matrix }
+        Factor { lu: view(&matrix).partial_piv_lu(), matrix }
     }
 
     /// Solves A X = B for all columns; `None` if not finite.
     pub fn solve_many(&self, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-        let mut x = Mat::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)]);
+        let mut x = view(right).to_owned();
         if right.nrows() > 0 {
             self.lu.solve_in_place(x.as_mut());
         }
-        let solution = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| x[(i, j)]);
+        let solution = owned(x.as_ref());
         solution.iter().all(|value| value.is_finite()).then_some(solution)
     }
 

@@ -1,8 +1,10 @@
-//! The linear algebra of stickslip in f64: dense operations and the sparse Cholesky factorization with its Schur complement.
+//! The linear algebra of stickslip in f64: dense operations and the sparse Cholesky factorization with its Schur
+//! complement.
 //!
-//! faer is generic: what calls it compiles it, each time anew and, in tests, unoptimized. This crate calls it once, is optimized
-//! always, and is the only one that names it. All of it runs on one thread, so that the bits of a result do not depend on the
-//! machine's number of cores; only the factorization of large matrices is spread, in pieces that do not depend on it.
+//! faer is generic: what calls it compiles it, each time anew and, in tests, unoptimized. This crate calls it once, is
+//! optimized always, and is the only one that names it. All of it runs on one thread, so that the bits of a result do
+//! not depend on the machine's number of cores; only the factorization of large matrices is spread, in pieces that do
+//! not depend on it.
 
 pub mod analysis;
 pub mod blocks;

@@ -7,15 +7,16 @@
 //! ```
 //! Structure and solutions; the numbers of the factor are found in [`numeric`].
 
-use crate::analysis::SupernodePatterns;
-use crate::blocks::{Accum, MatMut, MatRef, multiply, solve_lower, solve_upper};
 use rayon::iter::IndexedParallelIterator;
 
+use crate::analysis::SupernodePatterns;
+use crate::blocks::{Accum, MatMut, MatRef, multiply, solve_lower, solve_upper};
 use crate::watch::Watch;
 
 mod numeric;
 
-const DOING: &str = "factorizing the main system";
+/// What a factorization is called in progress and refusals.
+pub const DOING: &str = "factorizing the main system";
 
 /// Why there is no factor.
 #[derive(Debug)]

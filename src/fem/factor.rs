@@ -7,13 +7,13 @@
 //!     Cᵀ K_m⁻¹ C = L_C L_Cᵀ
 //! ```
 //!
-//! z is carried along as further rows that are not eliminated ([`stickslip_numerics::supernodes`]), so the sparsity of C is used
-//! to the end. How the others are ordered: [`super::fill`], [`super::order`].
+//! z is carried along as further rows that are not eliminated ([`stickslip_numerics::supernodes`]), so the sparsity of
+//! C is used to the end. How the others are ordered: [`super::fill`], [`super::order`].
 
 use nalgebra::DMatrix;
 use stickslip_numerics::analysis::AnalysisError;
 use stickslip_numerics::blocks::MatMut;
-use stickslip_numerics::supernodes::{FactorError, Supernodes, Terms};
+use stickslip_numerics::supernodes::{DOING, FactorError, Supernodes, Terms};
 
 use super::assembly::Coupling;
 use super::error::MainSystemError;
@@ -92,7 +92,7 @@ impl Factor {
         }
         check_stop(watch)?;
         let failed = |error| match error {
-            FactorError::OutOfMemory => MainSystemError::OutOfMemory { doing: "factorizing the main system" },
+            FactorError::OutOfMemory => MainSystemError::OutOfMemory { doing: DOING },
             FactorError::Interrupted => MainSystemError::Interrupted,
         };
         while !factor.supernodes.factorize(&matrix, factor.shift, can_spread, watch).map_err(failed)? {

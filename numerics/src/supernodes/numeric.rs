@@ -9,10 +9,10 @@
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use crate::blocks::{Accum, BlockCholesky, MatMut, MatRef, multiply, solve_lower};
 use rayon::prelude::*;
 
 use super::{DOING, FactorError, Shape, Terms};
+use crate::blocks::{Accum, BlockCholesky, MatMut, MatRef, multiply, solve_lower};
 use crate::watch::Watch;
 
 /// Columns of a supernode that are factorized at once, and of an update that is multiplied out at once: large
