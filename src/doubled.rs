@@ -11,6 +11,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
 use num_traits::{One, Zero};
+use stickslip_numerics::products::Split;
 
 /// A number that elements are computed in: f64, or [`Doubled`] where f64 loses too much.
 pub trait Real:
@@ -57,15 +58,14 @@ pub struct Doubled {
 impl Doubled {
     /// a·b exactly, as long as what is rounded away is not below the numbers there are.
     pub fn product(a: f64, b: f64) -> Doubled {
-        let hi = a * b;
+        let fused = |hi: f64| Doubled { hi, lo: a.mul_add(b, -hi) };
         if cfg!(any(target_feature = "fma", target_arch = "aarch64")) {
-            return Doubled { hi, lo: a.mul_add(b, -hi) };
+            return fused(a * b);
         }
         // Where the processor is not known to have a fused product, calling one costs more than the halves of the
-        // digits multiplied one by one (Dekker 1971), which overflow where a or b does in 2²⁷ times its size.
-        let ([a1, a2], [b1, b2]) = (halves(a), halves(b));
-        let lo = ((a1 * b1 - hi) + a1 * b2 + a2 * b1) + a2 * b2;
-        Doubled { hi, lo: if lo.is_finite() { lo } else { a.mul_add(b, -hi) } }
+        // digits multiplied one by one.
+        let (hi, lo) = Split::new(a).times(&Split::new(b));
+        if lo.is_finite() { Doubled { hi, lo } } else { fused(hi) }
     }
 
     /// What rounding to the nearest f64 leaves.
@@ -85,14 +85,6 @@ impl Doubled {
         let hi = a + b;
         Doubled { hi, lo: b - (hi - a) }
     }
-}
-
-/// a as the sum of two numbers of 26 digits (Veltkamp).
-fn halves(a: f64) -> [f64; 2] {
-    const SPLIT: f64 = (1_u64 << 27) as f64 + 1.0;
-    let scaled = SPLIT * a;
-    let first = scaled - (scaled - a);
-    [first, a - first]
 }
 
 impl Real for Doubled {

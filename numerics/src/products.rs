@@ -96,23 +96,24 @@ pub fn solve_unit_lower(lower: &[f64], right: &mut [f64], size: usize, columns: 
 }
 
 /// A number cut into two halves of 26 bits (Veltkamp), so that products of halves are exact.
-struct Split {
+pub struct Split {
     value: f64,
     high: f64,
     low: f64,
 }
 
 impl Split {
+    /// Overflows where the value does in 2²⁷ times its size.
     #[inline]
-    fn new(value: f64) -> Split {
+    pub fn new(value: f64) -> Split {
         let carried = 134_217_729.0 * value;
         let high = carried - (carried - value);
         Split { value, high, low: value - high }
     }
 
-    /// Product and its rounding error (Dekker).
+    /// Product and its rounding error (Dekker 1971).
     #[inline]
-    fn times(&self, other: &Split) -> (f64, f64) {
+    pub fn times(&self, other: &Split) -> (f64, f64) {
         let product = self.value * other.value;
         let error =
             ((self.high * other.high - product) + self.high * other.low + self.low * other.high) + self.low * other.low;
