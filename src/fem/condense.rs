@@ -92,14 +92,10 @@ impl MainSystem {
         Ok(())
     }
 
-    /// F − K S s per load case: what moves the free unknowns.
+    /// [`driving_force`] of each load case.
     pub(super) fn driving_forces(&self) -> Vec<Cow<'_, [f64]>> {
-        let cases = std::iter::zip(&self.f, &self.settled);
-        cases
-            .map(|(f, settled)| match settled {
-                None => Cow::Borrowed(&f[..]),
-                Some(settled) => Cow::Owned(std::iter::zip(f, self.k.times(settled)).map(|(f, k)| f - k).collect()),
-            })
+        std::iter::zip(&self.f, &self.settled)
+            .map(|(f, settled)| driving_force(&self.k, f, settled.as_deref()))
             .collect()
     }
 
@@ -188,6 +184,14 @@ impl MainSystem {
         coefficients[(at, at)] = largest / norm;
         self.coefficients = coefficients;
         self.z = extended;
+    }
+}
+
+/// F − K s of a load case with the displacements s that its supports impose: what moves the free unknowns.
+pub(super) fn driving_force<'f>(k: &SymmetricSparse, f: &'f [f64], settled: Option<&[f64]>) -> Cow<'f, [f64]> {
+    match settled {
+        None => Cow::Borrowed(f),
+        Some(settled) => Cow::Owned(std::iter::zip(f, k.times(settled)).map(|(f, k)| f - k).collect()),
     }
 }
 

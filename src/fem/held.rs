@@ -4,7 +4,7 @@
 use nalgebra::DVector;
 
 use super::assembly::{assemble, main_stiffness, on_joints, on_masters};
-use super::condense::{amplification, loses};
+use super::condense::{amplification, driving_force, loses};
 use super::error::MainSystemError;
 use super::factor::Factor;
 use super::kinematics::Kinematics;
@@ -48,12 +48,7 @@ impl Kinematics {
         let mut held = Vec::with_capacity(f.len());
         for (f, settled) in std::iter::zip(f, settled) {
             let settled = settled.as_deref();
-            let mut driving = f.clone();
-            for (driving, k) in
-                std::iter::zip(&mut driving, settled.map(|settled| k.times(settled)).unwrap_or_default())
-            {
-                *driving -= k;
-            }
+            let driving = driving_force(&k, f, settled);
             let mut v = on_masters(elimination, &driving);
             factor.solve(&mut v);
             let mut u = elimination.expand(&v, &closed);
