@@ -148,9 +148,16 @@ fn scheme(problem: &ContactProblem, answer: &ConeAnswer) -> Scheme {
     let pairs = problem.system.pairs.iter().zip(&problem.laws).zip(&answer.states);
     pairs
         .map(|((pair, law), state)| {
-            let moves = pair.tangential.clone().any(|joint| answer.z[joint] != 0.0);
-            let slips = if moves { State::Slip } else { State::Stick };
-            State::of(*state == ConeState::Open, pair.rubs().then_some(slips), law.fixed_bound())
+            let slips = match state {
+                ConeState::Closed => None,
+                ConeState::Stick => Some(State::Stick),
+                ConeState::Slip => Some(State::Slip),
+                ConeState::Open => {
+                    let moves = pair.tangential.clone().any(|joint| answer.z[joint] != 0.0);
+                    pair.rubs().then_some(if moves { State::Slip } else { State::Stick })
+                }
+            };
+            State::of(*state == ConeState::Open, slips, law.fixed_bound())
         })
         .collect()
 }
