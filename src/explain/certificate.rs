@@ -56,7 +56,7 @@ pub fn certify(problem: &ContactProblem, motions: &FreeMotions) -> CertificateSe
     }
     let exactly = certify_exactly(problem, &pairs, end);
     let out_of_time = found.out_of_time || exactly.out_of_time;
-    if exactly.certificate.is_some() || !system.is_in_space() {
+    if exactly.certificate.is_some() {
         return CertificateSearch { out_of_time, ..exactly };
     }
     let of_this_load = with_known_normals(problem, &pairs).and_then(|pairs| {
@@ -76,7 +76,7 @@ pub fn certify_again(problem: &ContactProblem, motions: &FreeMotions, amounts: &
     let load = Load { forces: &system.forces_of(&problem.load), terms: &system.forces_of(&problem.load_terms) };
     let end = Instant::now() + BUDGET;
     MotionProgram::new(&pairs, motions, load, end)?.verified(amounts, None).or_else(|| {
-        let pairs = with_known_normals(problem, &pairs).filter(|_| system.is_in_space())?;
+        let pairs = with_known_normals(problem, &pairs)?;
         let found = MotionProgram::new(&pairs, motions, load, end)?.verified(amounts, None)?;
         Some(Certificate { of_this_load: true, ..found })
     })

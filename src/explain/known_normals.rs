@@ -20,10 +20,10 @@ use crate::contact::sums::joint_forces;
 use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
 
-/// The pairs with the bounds of friction that the load decides; `None` where it does not.
+/// The pairs in space with the bounds of friction that the load decides; `None` where it does not.
 pub(super) fn with_known_normals(problem: &ContactProblem, pairs: &[ConePair]) -> Option<Vec<ConePair>> {
     let system = &*problem.system;
-    if system.force_form.is_some() || system.yielding.is_some() {
+    if !system.is_in_space() || system.force_form.is_some() || system.yielding.is_some() {
         return None;
     }
     let opens = |&i: &usize| !pairs[i].law.is_bilateral();
