@@ -62,18 +62,8 @@ impl LooseMotions {
             && wide
             && structure.superelement.is_none()
             && stiffnesses.contrast() <= CONTRAST
-            && shortest_side(structure) >= SHORT * extent(structure)
+            && shortest_side(structure) >= SHORT * structure.extent().into_iter().fold(0.0, f64::max)
     }
-}
-
-/// Largest difference of a coordinate.
-fn extent(structure: &Structure) -> f64 {
-    let of_axis = |axis: usize| {
-        let all = structure.nodes.iter().map(|node| node.position[axis]);
-        let [least, most] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
-        most - least
-    };
-    [0, 1, 2].into_iter().map(of_axis).fold(0.0, f64::max)
 }
 
 /// Least distance of two nodes of an element.

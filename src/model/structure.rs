@@ -111,6 +111,15 @@ impl Structure {
         body_of
     }
 
+    /// The largest difference between the nodes along each axis.
+    pub fn extent(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| {
+            let all = self.nodes.iter().map(|node| node.position[axis]);
+            let [least, largest] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+            largest - least
+        })
+    }
+
     /// Whether each element lies inside a rigid body, so that nothing strains it.
     pub fn rigid_elements(&self) -> Vec<bool> {
         let body_of = self.body_of_nodes();

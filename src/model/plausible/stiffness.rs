@@ -135,12 +135,7 @@ pub fn sections(scenario: &Scenario, structure: &Structure, file: Node<'_>) -> V
     if Sizes::of(&scenario.units).is_none() {
         return Vec::new();
     }
-    let extent = [0, 1, 2].map(|axis| {
-        let all = structure.nodes.iter().map(|node| node.position[axis]);
-        let (least, largest) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
-        largest - least
-    });
-    let extent = vector::length(extent);
+    let extent = vector::length(structure.extent());
     let length = scenario.units.length.as_deref().unwrap_or_default();
     let bars: Vec<Node<'_>> = file.get("bars").into_iter().flat_map(Node::items).collect();
     let mut seen: Vec<String> = Vec::new();
