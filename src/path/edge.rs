@@ -16,6 +16,9 @@ const CELLS: usize = 32;
 /// The bracket is narrowed to this share of its place: nearer to the edge proofs fail for want of margin, and every
 /// other way to an answer would be tried in vain.
 const NARROW: f64 = 1e-8;
+/// A bracket of no more than this share of its place is a limit: closer to it than this answers are found and
+/// collapses are certified on the cone, whatever the angle.
+pub(super) const CLOSE: f64 = 1e-5;
 /// Where in the bracket a proof is looked for next, where it failed at the place before.
 const SHARES: [f64; 2] = [0.5, 0.25];
 
@@ -57,6 +60,11 @@ impl Run {
         self.stands
     }
 
+    /// Whether the polygon has an answer from which none on the cone was found.
+    pub fn is_polygon_only(&self) -> bool {
+        self.outcome.is_answer() && !self.stands
+    }
+
     /// Whether it is proved that there is no answer.
     pub fn is_proved(&self) -> bool {
         self.verdict.is_some_and(Verdict::is_proof)
@@ -72,7 +80,11 @@ pub struct Edge {
     pub exact: bool,
     /// The run with an answer; freshly checked, as every answer is.
     pub answer: Run,
-    /// The run without one nearest to it; `None` where the end of the range has an answer.
+    /// The nearest run that found none, where what is proved begins farther away.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub undecided: Option<Run>,
+    /// The run without one nearest to it, one with a proof where there is one; `None` where the end of the range has an
+    /// answer.
     pub collapse: Option<Run>,
     /// Whether the proof holds for all values beyond: less friction bears no more.
     pub beyond: bool,
@@ -106,14 +118,18 @@ pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result
         )));
     };
     let Some(mut collapse) = before.pop() else {
-        return Ok(Edge { value: answer.value, exact: false, answer, collapse: None, beyond: false });
+        return Ok(Edge { value: answer.value, exact: false, answer, undecided: None, collapse: None, beyond: false });
     };
     // The proof nearest to the answer stands for the other side.
     while !collapse.is_proved() {
         let Some(farther) = before.pop() else { break };
         collapse = farther;
     }
-    let [answer, collapse] = narrowed(&run, answer, collapse)?;
+    let Bracket { answer, none, proof } = narrowed(&run, answer, collapse, case.prepared.is_in_space())?;
+    let (collapse, undecided) = match proof {
+        Some(proof) => (proof, Some(none)),
+        None => (none, None),
+    };
     let exact = end_of_path(case, name, &answer, &collapse)?;
     Ok(Edge {
         value: exact.unwrap_or(answer.value),
@@ -121,37 +137,75 @@ pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result
         // A motion that certifies the collapse does so under less friction too; a search through the schemes holds only there.
         beyond: which == Which::Least && collapse.verdict == Some(Verdict::Certified) && is_friction_alone(case, name),
         answer,
+        undecided,
         collapse: Some(collapse),
     })
 }
 
-/// The answer and the collapse nearest to each other that further runs between them show.
+/// The end of the values with an answer, as runs of their own show it.
+pub(super) struct Bracket {
+    /// The last run with an answer.
+    pub(super) answer: Run,
+    /// The run without one nearest to it: proved, or none is nearer to the answer that is.
+    pub(super) none: Run,
+    /// The nearest run with a proof that there is no answer, where it lies beyond `none`.
+    pub(super) proof: Option<Run>,
+}
+
+/// The answer and the runs without one nearest to each other that further runs between them show.
 pub(super) fn narrowed(
     run: &dyn Fn(f64) -> Result<Run, PathError>,
     mut answer: Run,
     mut collapse: Run,
-) -> Result<[Run; 2], PathError> {
-    let mut unknown = 0;
-    while (answer.value - collapse.value).abs() > NARROW * answer.value.abs().max(collapse.value.abs()) {
+    in_space: bool,
+) -> Result<Bracket, PathError> {
+    let mut undecided: Vec<Run> = Vec::new();
+    let is_wide = |inner: f64, outer: f64, share: f64| (inner - outer).abs() > share * inner.abs().max(outer.abs());
+    while is_wide(answer.value, collapse.value, NARROW) {
         // Where a proof fails close to the edge, nearer to it there may still be one.
-        let share = SHARES[unknown];
+        let share = SHARES[undecided.len()];
         let middle = collapse.value + share * (answer.value - collapse.value);
         if middle == answer.value || middle == collapse.value {
             break;
         }
         let next = run(middle)?;
         if next.is_answer() {
-            (answer, unknown) = (next, 0);
+            (answer, undecided) = (next, Vec::new());
         } else if next.is_proved() || !collapse.is_proved() {
-            (collapse, unknown) = (next, 0);
+            (collapse, undecided) = (next, Vec::new());
         } else {
-            unknown += 1;
-            if unknown == SHARES.len() {
+            undecided.push(next);
+            if undecided.len() == SHARES.len() {
                 break;
             }
         }
     }
-    Ok([answer, collapse])
+    // Loads that forces within the friction bounds balance, and that the law of slip does not carry, may reach far from
+    // the answers to what is proved to be too large: there the answers end before the proofs begin. In the plane the exact
+    // path tells where.
+    let nearest = undecided.into_iter().next();
+    let Some(none) = nearest.filter(|none| in_space && is_wide(answer.value, none.value, CLOSE)) else {
+        return Ok(Bracket { answer, none: collapse, proof: None });
+    };
+    let mut bracket = Bracket { answer, none, proof: Some(collapse) };
+    while is_wide(bracket.answer.value, bracket.none.value, NARROW) {
+        let middle = 0.5 * (bracket.answer.value + bracket.none.value);
+        if middle == bracket.answer.value || middle == bracket.none.value {
+            break;
+        }
+        let next = run(middle)?;
+        if next.is_answer() {
+            bracket.answer = next;
+            continue;
+        }
+        let farther = std::mem::replace(&mut bracket.none, next);
+        if bracket.none.is_proved() {
+            bracket.proof = None;
+        } else if farther.is_proved() {
+            bracket.proof = Some(farther);
+        }
+    }
+    Ok(bracket)
 }
 
 /// Where the exact path from the answer towards the collapse ends, between the two or within their rounding.

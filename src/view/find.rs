@@ -70,6 +70,9 @@ pub fn write(out: &mut dyn Write, asked: &Asked<'_>, found: &Found, style: &Styl
 /// `f = 0.34: ray, no-equilibrium, certified`.
 fn run(name: &str, run: &Run) -> String {
     let words = [Some(run.outcome.word()), run.class.map(RayClass::word), run.verdict.map(Verdict::word)];
+    if run.is_polygon_only() {
+        return format!("{name} = {}: an answer of the polygon only", run.value);
+    }
     let words: Vec<&str> = words.into_iter().flatten().collect();
     format!("{name} = {}: {}", run.value, words.join(", "))
 }
@@ -91,6 +94,9 @@ pub fn write_edge(
     style.paragraph(out, Role::Accent, &format!("{which} {name} with an answer: {value}{how}"))?;
     let proved = if collapse.is_proved() { "" } else { " (not proved that there is none)" };
     style.paragraph(out, Role::Plain, &format!("an answer at {}, freshly checked", run(name, &found.answer)))?;
+    if let Some(none) = &found.undecided {
+        style.paragraph(out, Role::Plain, &format!("none found at {} (not proved)", run(name, none)))?;
+    }
     style.paragraph(out, Role::Plain, &format!("no answer at {}{proved}", run(name, collapse)))?;
     if found.beyond {
         let text = "the proof holds for every smaller value: less friction bears no more";

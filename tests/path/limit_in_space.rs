@@ -6,6 +6,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, Verdict};
+use stickslip::path::edge::{Which, edge};
 use stickslip::path::limit::{Limit, limit};
 
 use crate::common::Case;
@@ -71,6 +72,57 @@ fn what_stands_without_friction_has_no_limit() {
     let limit = found(&Case::json(case), "F");
     assert!(limit.factor.is_none() && limit.bracket.is_none() && limit.last > 1e8, "{}", limit.end_sentence());
     assert!(limit.end_sentence().contains("no collapse was found"), "{}", limit.end_sentence());
+}
+
+/// A beam of two equal spans on three feet, each at the end of a rigid arm h below its axis, slides along its axis: the
+/// friction fᵢ Nᵢ of each foot turns the beam by h fᵢ Nᵢ there, and the forces Nᵢ follow from that turning, from w per
+/// length and from the beam that stays straight over the middle foot:
+///
+/// ```text
+/// l (N_a − N_c) = −2 h Σ fᵢ Nᵢ,   N_b l³/48 = 5 w l⁴/384 + (h f N_a − h f N_c) l²/16,   N_a + N_b + N_c = w l
+/// ```
+///
+/// With f at the ends and f_b in the middle, k = (h/l)²: N_b = w l (5/8 − 6 k f²)/(1 + 6 k f (f_b − f)). Forces that only
+/// balance may load the middle foot more, so that nothing is proved before a push some 4/3 of that.
+#[test]
+fn answers_end_before_the_proofs_begin() {
+    let (w, l, h, [f, f_b]) = (4.0, 4.0, 0.3, [0.1, 0.5]);
+    let k = (h / l) * (h / l);
+    let middle = w * l * (0.625 - 6.0 * k * f * f) / (1.0 + 6.0 * k * f * (f_b - f));
+    let slides = f * w * l + (f_b - f) * middle;
+    let foot = |at: &str, friction: f64| {
+        json!({ "id": format!("c-{at}"), "node": format!("foot-{at}"), "against": "ground", "normal": [0, 0, 1],
+            "friction": friction })
+    };
+    // From 2 the search over ever larger loads meets a proof at once.
+    let case = Case::json(json!({
+        "dimension": 3,
+        "parameters": { "H": 2 },
+        "materials": { "m": { "E": 1, "nu": 0 } },
+        "sections": { "s": { "area": 1e4, "inertia_y": 1e3, "inertia_z": 1e3, "torsion": 1e3 } },
+        "nodes": { "a": [-l / 2.0, 0, 0], "b": [0, 0, 0], "c": [l / 2.0, 0, 0],
+            "foot-a": [-l / 2.0, 0, -h], "foot-b": [0, 0, -h], "foot-c": [l / 2.0, 0, -h] },
+        "bars": [{ "id": "beam", "polyline": ["a", "b", "c"], "material": "m", "section": "s" }],
+        "rigid": [{ "id": "arm-a", "nodes": ["a", "foot-a"] }, { "id": "arm-b", "nodes": ["b", "foot-b"] },
+            { "id": "arm-c", "nodes": ["c", "foot-c"] }],
+        "supports": [{ "at": "b", "fixed": ["rx"] }],
+        "contacts": [foot("a", f), foot("b", f_b), foot("c", f)],
+        "loads": {
+            "weight": { "items": [{ "line": { "bar": "beam", "value": [0, 0, -w] } }] },
+            "push": { "factor": "H", "items": [{ "point": { "at": "b", "force": [1, 0, 0] } }] }
+        }
+    }));
+    let limit = found(&case, "H");
+    let factor = limit.factor.unwrap_or_else(|| panic!("{}", limit.end_sentence()));
+    assert!((factor / slides - 1.0).abs() < 1e-7, "{factor} {slides}");
+    let proof = limit.proof.expect("a proof beyond");
+    assert!(!limit.confirmed && proof > 1.2 * slides && proof < 2.0 * slides, "{proof}");
+    assert!(limit.end_sentence().contains("find none") && limit.confirmation().contains("prove that there is none"));
+    let values = case.scenario.parameter_values();
+    let solver = case.prepared.case(&case.scenario, &values).under(case.scenario.rules);
+    let edge = edge(solver, "H", [0.0, 20.0], Which::Most).expect("an edge");
+    assert!((edge.value / slides - 1.0).abs() < 1e-7, "{} {slides}", edge.value);
+    assert!(edge.undecided.is_some() && edge.collapse.is_some_and(|run| run.is_proved()));
 }
 
 /// Below its limit a load has an answer that passed its check on the cone, beyond it a collapse that is certified.

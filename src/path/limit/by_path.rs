@@ -29,6 +29,7 @@ pub(super) fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<
         confirmed: false,
         beyond: None,
         bracket: None,
+        proof: None,
         lost: false,
     };
     look_beside(&mut limit, &path, case, negative)?;

@@ -2,7 +2,7 @@
 //! answer on Coulomb's cone or a collapse that is certified on it.
 
 use super::record::{Limit, beside, size};
-use crate::path::edge::{Run, narrowed};
+use crate::path::edge::{Bracket, CLOSE, Run, narrowed};
 use crate::path::load_parameter::LoadParameter;
 use crate::path::start::PathError;
 use crate::solve::Case;
@@ -11,9 +11,6 @@ use crate::solve::Case;
 const GROWTH: f64 = 4.0;
 /// … up to this multiple of its present size.
 const MOST: f64 = 1e9;
-/// A bracket of no more than this share of its place is a limit: closer to it than this answers are found and
-/// collapses are certified on the cone, whatever the angle.
-const CLOSE: f64 = 1e-5;
 
 /// The limit of a load case or load parameter, outwards from its present value, or from 0 where there is no answer.
 pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathError> {
@@ -56,12 +53,14 @@ pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathErr
         confirmed: false,
         beyond: None,
         bracket: None,
+        proof: None,
         lost: false,
     };
     let Some(collapse) = collapse else { return Ok(limit) };
-    let [answer, collapse] = narrowed(&run, answer, collapse)?;
+    let Bracket { answer, none: collapse, proof } = narrowed(&run, answer, collapse, true)?;
     limit.last = answer.value;
     limit.bracket = Some([answer.value, collapse.value]);
+    limit.proof = proof.map(|proof| proof.value);
     let (prepared, _) = there(collapse.value)?;
     let found = Case { prepared: &prepared, ..case }.solve()?.answer.ray;
     if (answer.value - collapse.value).abs() > CLOSE * size(collapse.value, present) {

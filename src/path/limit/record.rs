@@ -37,6 +37,8 @@ pub struct Limit {
     /// Where no answer was found just before the end of the path, so that it may have led on only by rounding: the runs
     /// of their own between which the limit lies, one with an answer, one with a proof that there is none.
     pub bracket: Option<[f64; 2]>,
+    /// Where it is proved that there is no answer, where that lies beyond the bracket.
+    pub proof: Option<f64>,
     /// Whether no answer was found just before the end of the path.
     pub(super) lost: bool,
 }
@@ -50,7 +52,12 @@ impl Limit {
                 None => format!("there is an answer at {name} = {}, and no collapse was found", nine_digits(self.last)),
                 Some([answer, none]) => {
                     let proof = if self.is_proved() { "prove that there is none" } else { "find none" };
-                    format!("runs of their own find an answer at {name} = {answer} and {proof} at {name} = {none}")
+                    let farther = self
+                        .proof
+                        .map_or(String::new(), |proof| format!(" (and prove that there is none at {name} = {proof})"));
+                    format!(
+                        "runs of their own find an answer at {name} = {answer} and {proof} at {name} = {none}{farther}"
+                    )
                 }
             };
         };
@@ -117,7 +124,9 @@ impl Limit {
                 )
             }
             Some([answer, none]) => {
-                format!("not proved: runs of their own find an answer at {answer} and none at {none}")
+                let farther =
+                    self.proof.map_or(String::new(), |proof| format!(", and prove that there is none at {proof}"));
+                format!("not proved: runs of their own find an answer at {answer} and none at {none}{farther}")
             }
             None if self.confirmed => {
                 "confirmed: a run of its own finds an answer at 0.999999 of it and none at 1.000001".to_owned()

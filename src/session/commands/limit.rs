@@ -21,7 +21,9 @@ use crate::view;
 /// value, is looked at first.
 ///
 /// In space, where slips turn, no path leads to the limit: runs of their own bracket it, with an answer on Coulomb's
-/// cone on one side and a collapse that is certified on it on the other.
+/// cone on one side and a collapse that is certified on it on the other. Where forces within the friction bounds balance
+/// loads that the law of slip does not carry, what is proved begins farther away: it is said where the answers end and where
+/// the proof begins.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  limit pull\n  limit F2\n  limit cycle F2 0..100")]
 pub struct Limit {
