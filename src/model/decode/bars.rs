@@ -236,7 +236,9 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: &Arc<st
         }
         if let ElementKind::SpaceFrame { orientation, .. } | ElementKind::SpaceTruss { orientation, .. } = &kind {
             let ends = [0, 1].map(|end| builder.structure.nodes[pair[end]].position);
-            if let Err(AxesFault::Orientation) = BarAxes::<f64>::in_space(ends, *orientation) {
+            // A node without a usable place was reported.
+            let are_placed = ends.iter().flatten().all(|coordinate| coordinate.is_finite());
+            if are_placed && BarAxes::<f64>::in_space(ends, *orientation).err() == Some(AxesFault::Orientation) {
                 bar.cursor.problem(
                     format!("the orientation of the bar \"{}\" points along it, and should lie across it", bar.id),
                     "give a vector in its local x–y plane, on the side of +y",

@@ -186,10 +186,14 @@ impl<'d> Cursor<'d> {
         if value.fract() == 0.0 && value >= least as f64 && value <= 1e15 {
             return Some(value as usize);
         }
-        self.problem(
-            format!("{what} must be a whole number from {least}, found {}", self.found()),
-            "write it without a fraction",
-        );
+        let help = if value.fract() != 0.0 {
+            "write it without a fraction".to_owned()
+        } else if value < least as f64 {
+            format!("give {least} or more")
+        } else {
+            "give no more than 1e15".to_owned()
+        };
+        self.problem(format!("{what} must be a whole number from {least}, found {}", self.found()), help);
         None
     }
 
@@ -231,7 +235,10 @@ impl<'d> Cursor<'d> {
                 let numbers: Vec<Option<f64>> = entries.map(Cursor::number).collect();
                 Some([numbers[0]?, numbers[1]?, if count == 3 { numbers[2]? } else { 0.0 }])
             }
-            Some(_) => {
+            Some(entries) => {
+                // Whoever gives a z has forgotten the key that asks for it.
+                let space = "give x and y, or \"dimension\": 3 at the top of the file for a structure in space";
+                let help = if entries.len() == 3 { space } else { help };
                 self.problem(format!("expected {expected}, found {}", self.found()), help);
                 None
             }
@@ -252,7 +259,7 @@ impl<'d> Cursor<'d> {
         };
         self.problem(
             format!("{what} is {zero} and has no direction"),
-            format!("give any non-zero vector, e.g. {up} for a {what} upwards"),
+            format!("give any non-zero vector: {up} points upwards"),
         );
         None
     }

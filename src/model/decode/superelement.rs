@@ -34,7 +34,12 @@ pub fn read<'d>(builder: &mut Builder<'d>, at: Cursor<'d>, path: Option<&Path>) 
     let entries = matrix_file::entries(stiffness, Size::OfDofs(dofs.len()), path)?;
     let lower = lower_triangle(stiffness, entries)?;
     let name = stiffness.string().unwrap_or_default();
-    let (element, notes) = Superelement::new(builder.structure.dimension, &builder.structure.nodes, name, dofs, lower);
+    // A node without a usable place was reported: any will do, as long as it is one.
+    let mut nodes = builder.structure.nodes.clone();
+    for coordinate in nodes.iter_mut().flat_map(|node| &mut node.position).filter(|coordinate| coordinate.is_nan()) {
+        *coordinate = 0.0;
+    }
+    let (element, notes) = Superelement::new(builder.structure.dimension, &nodes, name, dofs, lower);
     builder.notes.extend(notes.into_iter().map(|note| format!("{name}: {note}")));
     builder.structure.superelement = Some(element);
     Some(())

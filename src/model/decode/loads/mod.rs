@@ -36,6 +36,13 @@ pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
     let entries = fields.optional("loads").and_then(Cursor::entries);
     for entry in entries.unwrap_or_default() {
         check_case_name(entry);
+        if builder.structure.load_cases.iter().any(|case| case.name == entry.name()) {
+            entry.key_problem(
+                format!("the superelement has a load case \"{}\" already", entry.name()),
+                "cases beside those of the superelement have names of their own; factors of `combinations` and `stages` add them up",
+            );
+            continue;
+        }
         if let Some(case) = load_case(builder, entry) {
             builder.structure.load_cases.push(case);
         } else {
