@@ -157,7 +157,9 @@ struct Sizes {
     force: f64,
     /// The largest Σ |terms| of a contact force: it is known to a few ε of that.
     terms: f64,
-    /// The largest way of a pair, or what such terms move the softest joint by.
+    /// The largest slip in half a cycle.
+    slip: f64,
+    /// The same, or what such terms move the softest joint by.
     way: f64,
     /// The largest gap, or way.
     gap: f64,
@@ -173,9 +175,9 @@ impl Sizes {
         };
         let force = largest(&|pair| pair.x_n.abs().max(pair.x_t.abs()));
         let terms = moments().map(|moment| moment.state.terms.amax()).fold(force, f64::max);
-        let slips = stages.iter().flat_map(|stage| &stage.slip).fold(0.0, |a: f64, slip| a.max(slip.abs()));
-        let way = slips.max(terms * softest);
-        Sizes { force, terms, way, gap: largest(&|pair| pair.z_n).max(way), same }
+        let slip = stages.iter().flat_map(|stage| &stage.slip).fold(0.0, |a: f64, slip| a.max(slip.abs()));
+        let way = slip.max(terms * softest);
+        Sizes { force, terms, slip, way, gap: largest(&|pair| pair.z_n).max(way), same }
     }
 
     /// A difference of forces as a share of the largest; 0 where it is rounding.
@@ -185,6 +187,12 @@ impl Sizes {
 
     fn gap_share(&self, off: f64) -> f64 {
         if off <= NOISE * self.gap { 0.0 } else { off / self.gap }
+    }
+
+    /// Whether a loss ∫ x dz is none: a small share of what the largest force loses on the largest slip, or the rounding
+    /// of x on that slip and of z under that force.
+    fn is_lossless(&self, lost: f64) -> bool {
+        lost <= self.same * self.force * self.slip + NOISE * (self.terms * self.slip + self.force * self.way)
     }
 
     /// A way without what is rounding of it.
@@ -319,7 +327,7 @@ fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -
         let difference = (number > 0).then(|| closed.max(off(there, there - 2)));
         let lost = halves.map(|half| half.dissipated);
         // What moves to and fro without loss is open, or on a bound of 0.
-        let lossless = lost.iter().all(|lost| *lost <= same * sizes.terms * sizes.way);
+        let lossless = lost.iter().all(|lost| sizes.is_lossless(*lost));
         let lost = if lossless { [0.0; 2] } else { lost };
         let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
         let schemes = |first: usize| stages[first..].iter().take(2).flat_map(StageResult::schemes);

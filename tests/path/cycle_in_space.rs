@@ -1,12 +1,12 @@
 //! Loads that go to and fro in space: starts with slips, and the largest amplitude that shakes down.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use stickslip::path::static_shakedown::{Static, static_limit};
 use stickslip::session::Session;
 
 use super::find::{near, number};
-use crate::common::lines::{embedded, report};
-use crate::common::{Case, near as is_near};
+use crate::common::lines::{embedded, read, report};
+use crate::common::{Case, near as is_near, scenario_text};
 
 /// The slider of weight 20 with f = 0.1 on springs of 1 each way, pulled by `fy` along y.
 fn bearing(fy: f64) -> Session {
@@ -88,4 +88,35 @@ fn the_largest_amplitude_that_shakes_down() {
     let limit = limit.expect("proved");
     assert!(limit <= 4.0 && limit > 4.0 - 1e-3, "{limit}");
     assert!(matches!(proof, Static::Proved(reserve) if reserve > 0.0));
+}
+
+/// A slider of weight 1 on a spring of 1 each way, f = 0.1, is pushed by ±0.3: it slips to and fro by 2 · 0.3 − 2 · 0.1 and
+/// loses 0.1 of that each way. What stands beside it, a pair that a force of 1e6 keeps open by 1, decides nothing of that:
+/// neither its forces nor the way they would move the slider.
+#[test]
+fn what_is_open_beside_a_slider_does_not_hide_its_loss() {
+    for tangents in [1, 2] {
+        let rows = 2 * (1 + tangents);
+        let row = |entries: &[(usize, f64)]| {
+            let mut row = vec![0.0; rows];
+            entries.iter().for_each(|(at, value)| row[*at] = *value);
+            row
+        };
+        // The normals of the slider and of the open pair, then their tangents.
+        let of_slider = |at: usize| at == 0 || (2..2 + tangents).contains(&at);
+        let stiffness: Vec<Vec<f64>> =
+            (0..rows).map(|at| row(&[(at, if of_slider(at) { 1.0 } else { 1e6 })])).collect();
+        let mut session = read(&scenario_text(json!({ "contact_system": {
+            "pairs": ["slider", "open"], "tangents": tangents, "stiffness": stiffness, "friction": [0.1, 0.1],
+            "loads": {
+                "weight": { "vector": row(&[(0, 1.0)]) }, "lift": { "vector": row(&[(1, -1e6)]) },
+                "push": { "vector": row(&[(2, -1.0)]) }
+            } } })));
+        let found = report(&mut session, "cycle push -0.3..0.3").expect("followed");
+        assert_eq!(found["kind"], "alternates", "{tangents}: {found}");
+        let last = found["cycles"].as_array().and_then(|cycles| cycles.last()).expect("cycles").clone();
+        for way in 0..2 {
+            is_near("the loss", number(&last["dissipated"][way]), 0.1 * 0.4, 1e-9, 1.0);
+        }
+    }
 }

@@ -71,6 +71,33 @@ fn a_slider_pulled_along_x_and_then_along_y_draws_a_tractrix() {
     assert!(last.estimated_error.expect("curved") <= 1e-8);
 }
 
+/// A slider on springs of 1 each way, f = 1/10, is held by the springs' pull of r₀ = 1/10 along y, at its limit; then that pull
+/// goes on by r₀ along x while the weight of 1 is taken off, q = 1 − t. It follows c = r₀ (t, 1) at the distance r₀ q; of the
+/// angle φ between the two, from 90°, dφ/dt = −sin φ / q makes tan(φ/2) = q, and friction r₀ q takes
+///
+/// ```text
+/// ∫ r₀ q · r₀ (cos φ + 1) dt = 2 r₀² ∫ q / (1 + q²) dq = r₀² ln 2
+/// ```
+///
+/// It opens where the springs rest, at c, whatever way it came: what is lost on the way has to be followed for itself.
+#[test]
+fn what_is_lost_on_the_way_to_an_opening() {
+    let case = Case::json(json!({
+        "contact_system": {
+            "pairs": ["slider"], "tangents": 2, "friction": [0.1],
+            "stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+            "loads": {
+                "weight": { "vector": [1, 0, 0] }, "x": { "vector": [0, -0.1, 0] }, "y": { "vector": [0, 0, -0.1] }
+            }
+        },
+        "stages": [{ "weight": 1, "y": 1 }, { "y": 1, "x": 1 }]
+    }));
+    let history = followed(&case);
+    assert_eq!(history.end, HistoryEnd::Complete);
+    near_all("c", &slip(&history.stages[1], 0), &[0.1, 0.1], 1e-9);
+    near("lost", history.stages[1].dissipated, 0.01 * 2.0_f64.ln(), 1e-9, 0.01);
+}
+
 /// Straight there and back: held until friction has turned round, 2 f W = 4 of the pull of 5, then it follows.
 #[test]
 fn what_is_unloaded_sticks() {

@@ -17,7 +17,7 @@ use crate::path::start::PathError;
 
 /// A joint is as good as without stiffness where the root of its R_ii is this share of the largest.
 const RIGID: f64 = 1e-5;
-/// The error of a leg may be this share of the largest displacement.
+/// The error of a leg may be this share of the largest displacement, that of its loss of the energy of such a displacement.
 pub(super) const TOLERANCE: f64 = 1e-10;
 /// The leg is taken in this many steps at most.
 const ROWS: usize = 8;
@@ -44,7 +44,7 @@ pub(super) struct Leg {
     pub(super) way: Integrals,
     /// Steps at its end give this z rate.
     pub(super) rate: DVector<f64>,
-    /// Largest last correction of a z, as a share of the size.
+    /// Largest last correction of a z or of an integral, as a share of the size.
     pub(super) error: f64,
     /// In how many steps it was taken at last.
     pub(super) rows: usize,
@@ -98,6 +98,11 @@ impl Measure {
         let size = self.of(difference);
         if size == 0.0 { 0.0 } else { size / self.size }
     }
+
+    /// A difference of energies as a share of that of the size: scaled displacements are roots of energies.
+    fn energy_share(&self, difference: f64) -> f64 {
+        if difference == 0.0 { 0.0 } else { difference.abs() / (self.size * self.size) }
+    }
 }
 
 /// A row of the tableau: z, ∫ z dt and the dissipation, one after the other.
@@ -128,8 +133,10 @@ pub(super) fn taken(
             row.push(now + (now - old) / (ratio - 1.0));
         }
         if n > 1 {
-            let correction = (&row[n - 1] - &row[n - 2]).rows(0, k).into_owned();
-            let error = measure.share(&correction);
+            // Where a leg ends may not depend on its way, as where a pair opens at its end: the integrals do.
+            let correction = &row[n - 1] - &row[n - 2];
+            let part = |from: usize| measure.share(&correction.rows(from, k).into_owned());
+            let error = part(0).max(part(k) / h).max(measure.energy_share(correction[2 * k]));
             if error <= TOLERANCE {
                 let best = &row[n - 1];
                 let way = Integrals { z: best.rows(k, k).into_owned(), dissipated: best[2 * k] };
