@@ -99,6 +99,16 @@ impl PairDirection {
         PairDirection { pair: of.id.clone(), z_n: direction[pair], z_t }
     }
 
+    /// Whether it parts. A direction holds no rounding: that was set to 0 when it was scaled.
+    pub fn parts(&self) -> bool {
+        self.z_n > 0.0
+    }
+
+    /// Whether it slips.
+    pub fn slips(&self) -> bool {
+        self.z_t.scalar() != 0.0
+    }
+
     /// z̄_τ along its tangents; a direction has the scale of its largest component, 1.
     pub fn slip(&self) -> Vec<f64> {
         match self.z_t {

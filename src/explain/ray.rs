@@ -243,7 +243,8 @@ impl RayReport {
     /// A collapse on Coulomb's cone where the run on the polygon ended in an answer: the motion of its certificate, where
     /// pairs that slip stay closed.
     pub fn of_certificate(problem: &ContactProblem, certificate: Certificate) -> RayReport {
-        let direction = sliding(problem, &certificate.direction).unwrap_or_else(|| certificate.direction.clone());
+        let direction = sliding(problem, &certificate.direction);
+        let direction = direction.unwrap_or_else(|| direction_of(certificate.direction.clone()));
         RayReport {
             verdict: Some(Verdict::Certified),
             powers: powers(problem, &direction),

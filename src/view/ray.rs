@@ -6,7 +6,6 @@ use super::force_unit;
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use crate::answer::record::{PairDirection, Ray, RayClass, Slip, VariableRate, Verdict};
-use crate::answer::rounding::denoised;
 use crate::contact::polygon::{angle, degrees};
 use crate::contact::system::ContactSystem;
 use crate::explain::mode::{PartMotion, pair_words};
@@ -46,8 +45,7 @@ fn verdict_meaning(verdict: Option<Verdict>) -> &'static str {
 
 /// What a pair does in a ray, in space with the direction of its slip from t1 towards t2; `None` where it does not move.
 pub fn motion_words(direction: &PairDirection) -> Option<String> {
-    let moves = |value: f64| denoised(value, 1.0) != 0.0;
-    let words = match (moves(direction.z_n), moves(direction.z_t.scalar())) {
+    let words = match (direction.parts(), direction.slips()) {
         (false, false) => return None,
         (true, true) => "parts and slips",
         (true, false) => "parts",
@@ -56,7 +54,7 @@ pub fn motion_words(direction: &PairDirection) -> Option<String> {
         _ => "slips -",
     };
     Some(match direction.z_t {
-        Slip::Space(slip) if moves(direction.z_t.scalar()) => format!("{words} towards {}", degrees(angle(slip))),
+        Slip::Space(slip) if direction.slips() => format!("{words} towards {}", degrees(angle(slip))),
         _ => words.to_owned(),
     })
 }

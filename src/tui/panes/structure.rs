@@ -281,14 +281,38 @@ impl Painter<'_> {
 
 /// The state a pair moves in, in the direction of a ray (largest 1).
 fn in_motion(direction: &PairDirection) -> PairMotion {
-    const NOTHING: f64 = 1e-9;
-    if direction.z_n > NOTHING {
+    if direction.parts() {
         return PairMotion::Open;
     }
     match direction.z_t {
-        slip if slip.scalar().abs() <= NOTHING => PairMotion::Stick,
+        _ if !direction.slips() => PairMotion::Stick,
         Slip::Space(_) => PairMotion::Slip,
         Slip::Plane(slip) if slip > 0.0 => PairMotion::SlipPlus,
         Slip::Plane(_) => PairMotion::SlipMinus,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::ray::motion_words;
+
+    /// A direction is scaled to its largest entry and freed of rounding: what is left in it moves, in words and in the
+    /// picture.
+    #[test]
+    fn pairs_move_in_the_picture_as_they_do_in_words() {
+        for (z_n, z_t, words, motion) in [
+            (0.0, Slip::Plane(0.0), None, PairMotion::Stick),
+            (0.0, Slip::Space([0.0; 2]), None, PairMotion::Stick),
+            (1e-10, Slip::Plane(0.0), Some("parts"), PairMotion::Open),
+            (1.0, Slip::Plane(1e-10), Some("parts and slips"), PairMotion::Open),
+            (0.0, Slip::Plane(1e-10), Some("slips +"), PairMotion::SlipPlus),
+            (0.0, Slip::Plane(-1e-10), Some("slips -"), PairMotion::SlipMinus),
+            (0.0, Slip::Space([0.0, 1e-10]), Some("slips towards 90°"), PairMotion::Slip),
+        ] {
+            let direction = PairDirection { pair: "c".into(), z_n, z_t };
+            assert_eq!(motion_words(&direction).as_deref(), words, "{direction:?}");
+            assert_eq!(in_motion(&direction), motion, "{direction:?}");
+        }
     }
 }
