@@ -13,7 +13,7 @@
 //! with what supports, ties and springs hold: the null space of these rows, group by group of what they connect.
 
 use super::dof::Dofs;
-use super::null_space::{Terms, null_basis};
+use super::null_space::{NullSpace, Terms, null_space};
 use super::parts::{Parts, STRAIGHT};
 use crate::model::groups::Groups;
 use crate::model::structure::{Component, Dimension, Structure};
@@ -21,6 +21,9 @@ use crate::model::vector::{dot, length, unit, way};
 
 /// Singular values and amounts below this share of the largest are rounding.
 const NULL: f64 = 1024.0 * f64::EPSILON;
+
+/// A coefficient of the rows is a product of two unit vectors, each known to 2.5 ε, summed from three terms.
+const COEFFICIENT: f64 = 8.0 * f64::EPSILON;
 
 /// Rotations of some nodes and parts at the same time.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +34,8 @@ pub struct IdleSpin {
     pub axis: [f64; 3],
     /// By how much each node turns, those of the part first. Where there are none, there is no displacement to be held.
     pub turns: Vec<(usize, [f64; 3])>,
+    /// By how much a component of a turn may be off: the vector of the null space is as good as the rows let it be.
+    pub error: f64,
 }
 
 /// The rotation of a node about an axis, as a sum over base dofs.
@@ -64,10 +69,11 @@ pub fn idle_spins(structure: &Structure, parts: &Parts) -> Vec<IdleSpin> {
     }
     let mut idle = Vec::new();
     for (unknowns, rows) in std::iter::zip(&unknowns, &of_group) {
-        let Some(basis) = null_basis(rows, unknowns.len(), NULL) else { continue };
+        let Some(NullSpace { basis, sensitivity }) = null_space(rows, unknowns.len(), NULL) else { continue };
         let mut vectors: Vec<Vec<f64>> = basis.column_iter().map(|vector| vector.iter().copied().collect()).collect();
         while let Some(vector) = (!vectors.is_empty()).then(|| vectors.remove(0)) {
-            let Some(spin) = spins.told(unknowns, &vector) else { continue };
+            let Some(mut spin) = spins.told(unknowns, &vector) else { continue };
+            spin.error = COEFFICIENT * sensitivity * vector.iter().map(|x| x * x).sum::<f64>().sqrt();
             // The others without what would turn the part about the axis that is held.
             let about = |vector: &[f64]| dot(spin.axis, spins.rotation(spin.part, unknowns, vector));
             let held = about(&vector);
@@ -202,6 +208,6 @@ impl Spins<'_> {
         let turns = turned
             .iter()
             .flat_map(|&(part, rotation)| self.turning[part as usize].iter().map(move |&node| (node, rotation)));
-        Some(IdleSpin { part, axis: unit(rotation)?, turns: turns.collect() })
+        Some(IdleSpin { part, axis: unit(rotation)?, turns: turns.collect(), error: 0.0 })
     }
 }

@@ -12,7 +12,7 @@ use std::collections::{HashMap, HashSet};
 use super::contrast::Stiffnesses;
 use super::dof::Dofs;
 use super::idle_spins::idle_spins;
-use super::null_space::{DENSE, Terms, null_basis};
+use super::null_space::{DENSE, Terms, null_space};
 use super::parts::{Parts, superelement_parts};
 use crate::model::groups::Groups;
 use crate::model::space_section::EndJoint;
@@ -199,7 +199,7 @@ impl Cluster {
             rows.extend(own.map(|&(part, axis)| unknowns.spin(part, axis).collect::<Terms>()));
         }
         let largest = self.nodes.iter().flat_map(|&n| structure.nodes[n].position).fold(0.0_f64, |m, x| m.max(x.abs()));
-        let basis = null_basis(&rows, unknowns.count, NULL * (1.0 + largest / unknowns.size))?;
+        let basis = null_space(&rows, unknowns.count, NULL * (1.0 + largest / unknowns.size))?.basis;
         let motions = basis.column_iter().map(|q| {
             let mut u = vec![[0.0; 6]; structure.nodes.len()];
             for &node in &self.nodes {

@@ -12,8 +12,9 @@ use crate::model::pair::Joint;
 use crate::model::structure::Structure;
 use crate::watch::Watch;
 
-/// A torque below this share of the moments that it is the sum of is the rounding of them and of the spins.
-const NO_TORQUE: f64 = 1024.0 * f64::EPSILON;
+/// A torque below this share of the moments that it is the sum of is the rounding of the sum and of their own (method §4,
+/// "Zero"); what the spin itself may be off by comes on top.
+const SUM: f64 = 64.0 * f64::EPSILON;
 
 /// See the module; the parts are those of [`MainSystem`](super::MainSystem).
 pub struct Outline {
@@ -60,10 +61,10 @@ pub fn refuse_torques(
     for spin in spins {
         let terms: Vec<(usize, f64)> = spin.turns.iter().flat_map(|&(node, axis)| turn(dofs, node, axis)).collect();
         for f in f {
-            let (torque, size) = terms
-                .iter()
-                .fold((0.0, 0.0), |(sum, size): (f64, f64), &(dof, a)| (sum + a * f[dof], size + (a * f[dof]).abs()));
-            if torque.abs() > NO_TORQUE * size {
+            let (torque, rounding) = terms.iter().fold((0.0, 0.0), |(sum, rounding): (f64, f64), &(dof, a)| {
+                (sum + a * f[dof], rounding + (SUM * a.abs() + spin.error) * f[dof].abs())
+            });
+            if torque.abs() > rounding {
                 let mut u = vec![[0.0; 6]; structure.nodes.len()];
                 spin.turns.iter().for_each(|&(node, [x, y, z])| u[node] = [0.0, 0.0, 0.0, x, y, z]);
                 return Err(mechanism(structure, &u));

@@ -391,3 +391,32 @@ fn rigid_bodies_in_space() {
     near_all("turned", &moved(&answer, "c")[3..], &[0.0, 1.5, 0.0], 1e-12);
     near_all("turned", &moved(&answer, "d")[3..], &[-1.0 / 3.0, 0.0, 0.0], 1e-12);
 }
+
+/// A hinge that is held against turning about x, and a clamped bar along a that meets it at the small angle δ to x: a moment
+/// t1 x + t2 a in their plane twists the bar by t2, one across it drives the hinge. The axis about which it may turn, x × a,
+/// is known to ε/δ.
+#[test]
+fn a_hinge_and_a_bar_at_a_small_angle_take_a_moment_in_their_plane() {
+    let (delta, l, [t1, t2]) = (1e-5_f64, 2.0, [2.0, -1.5]);
+    let (x, axis) = ([1.0, 0.0, 0.0], [delta.cos(), delta.sin() * 0.7_f64.cos(), delta.sin() * 0.7_f64.sin()]);
+    let model = |moment: [f64; 3]| {
+        json!({
+            "dimension": 3,
+            "materials": { "m": { "E": 2.0e8, "nu": 0.25 } },
+            "sections": { "s": { "area": 0.01, "inertia_y": 3e-5, "inertia_z": 3e-5, "torsion": 2e-5 } },
+            "nodes": { "a": axis.map(|c| -l * c), "n": [0, 0, 0] },
+            "bars": [{ "id": "an", "nodes": ["a", "n"], "material": "m", "section": "s", "hinges": ["end"] }],
+            "supports": [{ "at": "a", "fixed": ["x", "y", "z", "rx", "ry", "rz"] }, { "at": "n", "fixed": ["rx"] }],
+            "loads": { "M": { "items": [{ "point": { "at": "n", "force": [0, 0, 0], "moment": moment } }] } }
+        })
+    };
+    let sum = |of: [f64; 3], along: [f64; 3]| (0..3).map(|c| of[c] * along[c]).sum::<f64>();
+    let answer = space(model([0, 1, 2].map(|c| t1 * x[c] + t2 * axis[c]))).solve(&[]);
+    is_answer(&answer);
+    let all = answer.reactions.as_ref().expect("reactions");
+    let moment = |node: &str| all.iter().find(|found| found.node == node).expect("a reaction").moment();
+    near("bar", sum(moment("a"), axis), -t2, 1e-9, t2);
+    near("hinge", moment("n")[0], -t1, 1e-9, t1);
+    let refused = refused(model([0.0, -0.7_f64.sin(), 0.7_f64.cos()]));
+    assert!(refused.contains("node n is free to move by turning about"), "{refused}");
+}
