@@ -12,24 +12,13 @@
 //! the conditions of Karush, Kuhn and Tucker of what is left are an LCP with a positive semidefinite matrix, which
 //! Lemke's algorithm solves.
 
-use std::ops::ControlFlow;
-use std::sync::Arc;
-
 use nalgebra::{DMatrix, DVector};
 
 use super::problem::ContactProblem;
 use super::sum::Sum;
 use super::system::ContactSystem;
-use crate::lcp::basis_solution::vertex;
-use crate::lcp::driver::run;
-use crate::lcp::lemke::SchemeEngine;
-use crate::lcp::mirrored::MirroredLcp;
-use crate::lcp::outcome::Outcome;
-use crate::lcp::problem::{Lcp, NOISE, Scale};
-use crate::lcp::ratio_test::TieRule;
-
-/// Pivots after which the forces are left as they were found.
-const PIVOTS: usize = 10_000;
+use crate::lcp::problem::NOISE;
+use crate::lcp::solution::solution;
 
 /// Puts the forces of least norm in place of `forces`, with the magnitudes of their terms; z as in the state, exact
 /// zeros where nothing moves. Returns the pairs whose forces are not determined by the motion.
@@ -263,16 +252,8 @@ fn shortest(
         let matrix: Vec<Vec<f64>> =
             (0..n).map(|a| (0..n).map(|b| rows[a].dot(&(&inverse * &rows[b]))).collect()).collect();
         let q: Vec<f64> = (0..n).map(|row| slack(row, &shortest) / size).collect();
-        let lcp = Lcp { covering: vec![1.0; n], scale: Scale::plain(&matrix), matrix, q };
-        let lcp = Arc::new(MirroredLcp::plain(&lcp));
-        let rule = TieRule::Lexicographic((0..n).collect());
-        let mut engine = SchemeEngine::new(Arc::clone(&lcp), rule);
-        let found = run(&mut engine, PIVOTS, &mut |_| ControlFlow::Continue(()));
-        if !matches!(found.outcome, Outcome::Normal { .. }) {
-            return None;
-        }
-        let point = vertex(&lcp, &found.pivots.basis()).unwrap_or(found.point);
-        multipliers = point.z.iter().enumerate().filter(|(_, y)| **y > 0.0).map(|(row, y)| (row, y * size)).collect();
+        let z = solution(matrix, q)?;
+        multipliers = z.iter().enumerate().filter(|(_, y)| **y > 0.0).map(|(row, y)| (row, y * size)).collect();
     }
     let nu = solve(&multipliers);
     let terms = |a: usize| free.row(a).iter().zip(nu.iter()).map(|(q, nu)| q * nu).collect::<Vec<f64>>();

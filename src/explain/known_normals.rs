@@ -1,14 +1,15 @@
 //! Pairs whose forces along the normals the load alone decides: elastic along the normals, free to slip away.
 //!
 //! A motion that slides them costs nothing and does not part them, so that by statics alone they might be pressed by
-//! any force, and friction might hold any load. But where no slip is felt along the normals, R_nτ = 0, and the main
-//! system presses every pair, x_n = RF_n ≥ 0, these are the forces of every answer:
+//! any force, and friction might hold any load. But where no slip is felt along the normals, R_nτ = 0, the forces along
+//! them are those of an LCP of their own, the same in every answer:
 //!
 //! ```text
-//!     x_n = R_nn z_n + RF_n ≥ 0 ⟂ z_n ≥ 0     ⇒     0 = z_nᵀ x_n = z_nᵀ R_nn z_n + z_nᵀ RF_n,   neither < 0   ⇒   R_nn z_n = 0
+//!     x_n = R_nn z_n + RF_n ≥ 0 ⟂ z_n ≥ 0
+//!     of two solutions   (z − z′)ᵀ R_nn (z − z′) = −zᵀx′ − z′ᵀx ≤ 0   ⇒   R_nn (z − z′) = 0   ⇒   x = x′
 //! ```
-//! Then the bounds of friction are known, f RF_n + c, and a proof needs motions that part no pair: it is one of these
-//! forces only, and a larger load may press harder.
+//! Then the bounds of friction are known, f x_n + c, and a proof needs motions that part no pressed pair and close no open
+//! one: it is one of these forces only, and a larger load may press harder.
 
 use nalgebra::DVector;
 
@@ -19,6 +20,7 @@ use crate::contact::sum::Sum;
 use crate::contact::sums::joint_forces;
 use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
+use crate::lcp::solution::solution;
 
 /// The pairs in space with the bounds of friction that the load decides; `None` where it does not.
 pub(super) fn with_known_normals(problem: &ContactProblem, pairs: &[ConePair]) -> Option<Vec<ConePair>> {
@@ -30,20 +32,36 @@ pub(super) fn with_known_normals(problem: &ContactProblem, pairs: &[ConePair]) -
     if (0..pairs.len()).filter(opens).any(|i| feels_slips(system, pairs, i)) {
         return None;
     }
-    let forces = joint_forces(problem, &DVector::zeros(system.joint_count()));
-    if (0..pairs.len()).filter(opens).any(|i| forces[i].value < -forces[i].error()) {
-        return None;
-    }
-    let known = |(pair, force): (&ConePair, &Sum)| {
-        let most = force.value.max(0.0) + force.error();
-        let law = if pair.law.is_bilateral() {
-            pair.law
-        } else {
-            PairLaw::bilateral(pair.law.friction() * most + pair.law.fixed_bound())
+    let (z, forces) = normals(problem, &(0..pairs.len()).filter(opens).collect::<Vec<_>>())?;
+    let known = |(i, pair): (usize, &ConePair)| {
+        let most = forces[i].value.max(0.0) + forces[i].error();
+        let law = match pair.law.is_bilateral() {
+            true => pair.law,
+            false if z[i] > 0.0 => PairLaw::rubbing(0.0, pair.law.fixed_bound(), 0.0),
+            false => PairLaw::bilateral(pair.law.friction() * most + pair.law.fixed_bound()),
         };
         ConePair { law, tangents: pair.tangents.clone() }
     };
-    Some(pairs.iter().zip(&forces).map(known).collect())
+    Some(pairs.iter().enumerate().map(known).collect())
+}
+
+/// Openings, and forces of all joints while none slips: x_n of the pairs that can open is that of every answer. `None`
+/// where the load opens them without end, or where rounding leaves doubts.
+fn normals(problem: &ContactProblem, pairs: &[usize]) -> Option<(DVector<f64>, Vec<Sum>)> {
+    let stiffness = &problem.system.stiffness;
+    let mut z = DVector::zeros(problem.system.joint_count());
+    let mut forces = joint_forces(problem, &z);
+    let size = pairs.iter().map(|&i| forces[i].value.abs()).fold(0.0, f64::max);
+    if pairs.iter().any(|&i| forces[i].value < -forces[i].error()) {
+        let stiffest = pairs.iter().map(|&i| stiffness[(i, i)]).fold(f64::MIN_POSITIVE, f64::max);
+        let row = |&i: &usize| pairs.iter().map(|&j| stiffness[(i, j)] / stiffest).collect();
+        let opened =
+            solution(pairs.iter().map(row).collect(), pairs.iter().map(|&i| forces[i].value / size).collect())?;
+        pairs.iter().zip(opened).for_each(|(&i, opened)| z[i] = opened * size / stiffest);
+        forces = joint_forces(problem, &z);
+    }
+    let obeys = |&i: &usize| forces[i].value >= -forces[i].error() && (z[i] == 0.0 || forces[i].is_zero());
+    (pairs.iter().all(obeys) && z.iter().all(|z| *z >= 0.0)).then_some((z, forces))
 }
 
 /// Whether some slip changes the force along the normal of a pair; entries of a condensed R that are rounding do not.

@@ -35,6 +35,7 @@ pub mod pivot;
 mod pivot_state;
 pub mod problem;
 pub mod ratio_test;
+pub mod solution;
 mod updated_matrix;
 pub mod variable;
 mod waiting_steps;

@@ -1,7 +1,7 @@
 //! Contact systems from files: what counts as a kernel, what is refused, frictionless pairs, compliances.
 
 use crate::common::laws::violation;
-use crate::common::{Case, close, is_answer, near, scenario_text};
+use crate::common::{Case, close, is_answer, near, near_all, of_pairs, scenario_text};
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -404,4 +404,28 @@ fn the_exact_check_has_the_data_of_the_file() {
     let found = case.prepared.check_exactly(&solved, &Quiet).expect("checked");
     let Exactly::Contact(check) = found else { panic!("a contact problem") };
     assert!(matches!(check.finding, Finding::Refuted { .. }) || solved.answer.pairs[0].z_n > 0.0, "{check:?}");
+}
+
+/// Pairs on springs along the normals, R_nn = [3 1; 1 5], that slide away at no cost. The load pulls b open by 1/5, which
+/// presses a by 2 + 1/5: it slides under more than f · 2.2, and that is certified, of this load.
+#[test]
+fn a_pair_on_a_spring_slides_while_another_is_open() {
+    let mut stiffness = vec![vec![0.0; 6]; 6];
+    (stiffness[0][0], stiffness[0][1], stiffness[1][0], stiffness[1][1]) = (3.0, 1.0, 1.0, 5.0);
+    let case = Case::json(json!({
+        "parameters": { "T": 1 },
+        "contact_system": {
+            "pairs": ["a", "b"], "tangents": 2, "stiffness": stiffness, "friction": [0.5, 0.5],
+            "loads": { "weight": { "vector": [2, -1, 0, 0, 0, 0] },
+                       "pull": { "factor": "T", "vector": [0, 0, 0.6, 0.8, 0, 0] } }
+        }
+    }));
+    for excess in [1e-1, 1e-4, 1e-8] {
+        let ray = case.solve(&[("T", 1.1 * (1.0 + excess))]).ray.expect("it slides");
+        assert_eq!((ray.verdict, ray.of_this_load), (Some(Verdict::Certified), true), "{excess:e}: {ray:?}");
+        let answer = case.solve(&[("T", 1.1 * (1.0 - excess))]);
+        is_answer(&answer);
+        near_all("x", &of_pairs(&answer, |pair| pair.x_n), &[2.2, 0.0], 1e-12);
+        near_all("z", &of_pairs(&answer, |pair| pair.z_n), &[0.0, 0.2], 1e-12);
+    }
 }
