@@ -57,6 +57,7 @@ pub fn write(
     if ties {
         table.columns.push(Column::words("ties").droppable(1));
     }
+    let names_directions = chosen.iter().any(|pivot| pivot.sentence.contains('°'));
     let longest = chosen.iter().map(|pivot| pivot.sentence.width()).max().unwrap_or(0);
     let on_the_row = longest > 0 && longest + 50 <= style.width;
     if on_the_row {
@@ -90,6 +91,14 @@ pub fn write(
             answer.pivot_count
         );
         writeln!(out, "{}", style.paint(Role::Muted, &style.fit(&text, style.width)))?;
+    }
+    if let Some(polygon) = answer.polygon.as_ref().filter(|polygon| polygon.cone && names_directions) {
+        let text = format!(
+            "directions in these lines are those of the {} facets of the polygon, on which the pivots are made; the answer is \
+             taken on from the last of them to the cone, where the directions that `pairs` shows are the pairs' own",
+            polygon.facets
+        );
+        style.paragraph(out, Role::Muted, &text)?;
     }
     Ok(())
 }

@@ -409,3 +409,18 @@ fn the_lcp_goes_to_a_scenario_and_to_matrix_market() {
     shown(&mut session, &format!("load {}", at("smooth.json")));
     assert!(refused(&mut session, &format!("export lcp {}", at("c.json"))).contains("d > 0"));
 }
+
+/// Pivots are made on the polygon, answers in space are on the cone: below the pivots stands which directions are whose. With
+/// the cone off they are the same, and in the plane there are none.
+#[test]
+fn pivots_in_space_say_whose_directions_they_tell() {
+    let words = "directions in these lines are those of the 8 facets of the polygon";
+    let in_one_line = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut space = session("bearing-two-way");
+    let pivots = in_one_line(shown(&mut space, "pivots"));
+    assert!(pivots.contains('°') && pivots.contains(words), "{pivots}");
+    let off = in_one_line(shown(&mut space, "set cone off; pivots"));
+    assert!(off.contains('°') && !off.contains(words), "{off}");
+    let plane = in_one_line(shown(&mut session("beam"), "pivots"));
+    assert!(!plane.contains("directions in these lines"), "{plane}");
+}
