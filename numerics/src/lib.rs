@@ -9,6 +9,7 @@
 pub mod analysis;
 pub mod blocks;
 pub mod decompositions;
+pub mod least_norm;
 pub mod products;
 pub mod supernodes;
 pub mod watch;

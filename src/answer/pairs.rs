@@ -3,12 +3,12 @@
 use nalgebra::DVector;
 
 use super::record::{InSpace, PairState, State};
-use crate::contact::cone::ConeAnswer;
+use crate::contact::cone::{ConeAnswer, MixedState};
 use crate::contact::force_form::unknowns;
 use crate::contact::problem::ContactProblem;
 use crate::contact::self_stress::least_norm;
 use crate::contact::sum::Sum;
-use crate::contact::sums::{StateForces, is_still, state_forces};
+use crate::contact::sums::{StateForces, is_still, known_to, state_forces};
 use crate::contact::system::{ContactPair, ContactSystem};
 use crate::contact::written::ContactLcp;
 use crate::lcp::outcome::Point;
@@ -34,15 +34,14 @@ pub struct JointState {
     pub on_cone: bool,
 }
 
-/// A force in force form is known to a few ε of this: the sums that it enters, weighted by its part in each.
-fn known_to(system: &ContactSystem, responses: &[Sum], joint: usize) -> f64 {
-    let column = system.stiffness.column(joint);
-    let any_force = (0..column.len()).any(|i| column[i] != 0.0 && !system.is_forced(i));
-    let felt = column.iter().zip(responses).enumerate().filter(|(i, _)| !any_force || !system.is_forced(*i));
-    let (sum, size) = felt.fold((0.0, 0.0), |(sum, size), (_, (entry, response))| {
-        (sum + entry.abs() * response.magnitude, size + entry * entry)
-    });
-    if size > 0.0 { sum / size } else { 0.0 }
+/// What the equations of the file leave over, where the joints of the problem are those of a file.
+fn left_by_file(problem: &ContactProblem, z: &DVector<f64>, forces: &[Sum]) -> Vec<Sum> {
+    let Some(yielding) = problem.system.yielding.as_ref() else {
+        return if problem.system.force_form.is_some() { Vec::new() } else { state_forces(problem, z).left };
+    };
+    let Some(file) = &yielding.exact.file else { return Vec::new() };
+    let Some(load) = yielding.exactly(problem).and_then(|exact| exact.file_load) else { return Vec::new() };
+    file.left_by(forces, &problem.dislocation(z), &problem.dislocation_sizes(z.abs()), &load)
 }
 
 impl JointState {
@@ -71,24 +70,31 @@ impl JointState {
 
     /// The state of an answer on Coulomb's cone.
     pub fn on_cone(problem: &ContactProblem, found: ConeAnswer) -> JointState {
+        let ConeAnswer { z, forces, .. } = found;
+        JointState { on_cone: true, ..JointState::of(problem, z, &forces) }
+    }
+
+    /// The state of these displacements and forces of all joints.
+    pub fn of(problem: &ContactProblem, z: DVector<f64>, forces: &[Sum]) -> JointState {
         let yielding = problem.system.yielding.as_ref();
-        let ConeAnswer { mut z, mut forces, .. } = found;
-        let mut free = Vec::new();
-        if let Some(yielding) = yielding {
-            yielding.put_exactly(problem, &mut z, &mut forces);
-            free = yielding.undetermined(problem, &z, false);
-        }
+        let free = yielding.map_or(Vec::new(), |yielding| yielding.undetermined(problem, &z, false));
         let read = |pick: fn(&Sum) -> f64| DVector::from_iterator(forces.len(), forces.iter().map(pick));
         JointState {
-            left: state_forces(problem, &z).left,
+            left: left_by_file(problem, &z, forces),
             force: read(|sum| sum.value),
             terms: read(|sum| sum.magnitude),
             z_terms: DVector::zeros(z.len()),
             z,
             p: 0.0,
             free,
-            on_cone: true,
+            on_cone: false,
         }
+    }
+
+    /// The state of joints that repeat one another, found with the forces of some of them for unknowns.
+    pub fn of_mixed(problem: &ContactProblem, MixedState { z, forces, z_terms, .. }: MixedState) -> JointState {
+        let state = JointState { z_terms, ..JointState::of(problem, z, &forces) };
+        if problem.system.force_form.is_some() { state.with_least_norm(problem) } else { state }
     }
 
     /// No forces at all, on Coulomb's cone.

@@ -18,7 +18,8 @@
 //! ```text
 //!     λ_τ = x⁺ − f x_n − c,     z⁺ = z_τ + z⁻ ≥ 0 ⟂ x⁺ ≥ 0,     x⁻ = 2 (f x_n + c) − x⁺ ≥ 0 ⟂ z⁻ ≥ 0
 //! ```
-//! D is chosen so that no λ_n of I depends on the λ_τ of D: then nothing here is implicit.
+//! D is chosen so that nothing here is implicit: where the tangential joint of a pair is in D, its normal joint is too, or no
+//! λ_τ of D enters its λ_n.
 
 use std::sync::Arc;
 

@@ -2,7 +2,9 @@
 
 use nalgebra::DVector;
 
-use super::cone::{ConeAnswer, ConeCheck, ConeFailure, ConePair, ConeProblem, answer_on_cone};
+use super::cone::{
+    ConeAnswer, ConeCheck, ConeFailure, ConePair, ConeProblem, MixedProblem, MixedState, answer_on_cone,
+};
 use super::problem::ContactProblem;
 use super::sum::Sum;
 use super::sums::joint_forces;
@@ -47,7 +49,8 @@ impl<'a> OnCone<'a> {
         }
     }
 
-    /// The answer on the cone that Newton's method finds from displacements `start`.
+    /// The answer on the cone that Newton's method finds from displacements `start`. Joints that yield bring it near, and
+    /// those of the problem itself are put in their place; where that leads nowhere multipliers bring it nearer.
     ///
     /// # Errors
     /// [`ConeFailure`].
@@ -55,13 +58,29 @@ impl<'a> OnCone<'a> {
         let Some(yielding) = &self.problem.system.yielding else {
             return answer_on_cone(&self.problem(), start, watch);
         };
+        let exact = yielding.exactly(self.problem);
+        let exactly = |z: &DVector<f64>, forces: &[Sum], steps: usize| match &exact {
+            None => Ok(None),
+            Some(exact) => Ok(MixedProblem::new(exact, &self.pairs)
+                .answer(z, forces, watch)?
+                .map(|found| self.reached(found, start, steps))
+                .filter(|found| found.check.passed)),
+        };
         let stiffness = &self.problem.system.stiffness;
         let (mut now, mut from, mut steps) = (self.clone(), start.clone(), 0);
         let mut before: Option<Vec<Sum>> = None;
         for _ in 0..MULTIPLIERS {
-            let found = answer_on_cone(&now.problem(), &from, watch)?;
+            let found = match answer_on_cone(&now.problem(), &from, watch) {
+                Err(failure @ ConeFailure::NotConverged { .. }) => {
+                    return exactly(&from, &now.problem().forces(&from), steps)?.ok_or(failure);
+                }
+                found => found?,
+            };
             steps += found.steps;
-            if before.is_some_and(|before| yielding.is_settled(&before, &found.forces)) {
+            if let Some(found) = exactly(&found.z, &found.forces, steps)? {
+                return Ok(found);
+            }
+            if exact.is_none() && before.is_some_and(|before| yielding.is_settled(&before, &found.forces)) {
                 return Ok(ConeAnswer { steps, ..found });
             }
             let [held, terms] = yielding.held_by(stiffness, &found.forces);
@@ -69,6 +88,19 @@ impl<'a> OnCone<'a> {
             (from, before) = (found.z, Some(found.forces));
         }
         Err(ConeFailure::DoNotFit)
+    }
+
+    fn reached(&self, found: MixedState, start: &DVector<f64>, steps: usize) -> ConeAnswer {
+        let MixedState { z, forces, steps: own, .. } = found;
+        let problem = self.problem();
+        ConeAnswer {
+            states: problem.states(&z),
+            check: ConeCheck::of(&problem, &z, &forces),
+            steps: steps + own,
+            distance: problem.slip_difference(&z, start),
+            z,
+            forces,
+        }
     }
 
     /// The fresh check of displacements z and their forces.
@@ -94,4 +126,22 @@ pub fn widest_cone_pairs(problem: &ContactProblem) -> Vec<ConePair> {
         }
     }
     pairs
+}
+
+/// What joints that repeat one another do in the plane, or on a polygon that is solved for its own sake, near this state
+/// of all joints; `None` where they do not repeat one another, or where nothing is found.
+///
+/// # Errors
+/// Stopped from outside.
+pub fn with_repeated_joints(
+    problem: &ContactProblem,
+    (z, forces): (&DVector<f64>, &[Sum]),
+    watch: &dyn Watch,
+) -> Result<Option<MixedState>, ConeFailure> {
+    let yielded = match &problem.system.yielding {
+        Some(yielding) => yielding.exactly(problem),
+        None => problem.system.force_form.is_some().then(|| problem.clone()),
+    };
+    let pairs = cone_pairs(problem);
+    yielded.map_or(Ok(None), |problem| MixedProblem::new(&problem, &pairs).answer(z, forces, watch))
 }

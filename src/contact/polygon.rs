@@ -45,6 +45,11 @@ impl Polygon {
         self.facets() / 2
     }
 
+    /// Half of a side of the polygon around a circle of radius 1.
+    pub fn half_side(self) -> f64 {
+        (0.5 * TAU / self.facets() as f64).tan()
+    }
+
     /// d_k: components along t1 and t2. Mirrors are opposite to the last digit.
     pub fn direction(self, facet: usize) -> [f64; 2] {
         if facet >= self.half() {

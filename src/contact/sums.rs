@@ -159,3 +159,14 @@ pub fn is_still(system: &ContactSystem, z: &DVector<f64>, forces: &[Sum], joint:
     let own = system.stiffness[(joint, joint)].abs() * z[joint].abs();
     own <= NOISE * forces[joint].magnitude && displacement_share(system, z, forces, joint) <= NOISE
 }
+
+/// A force in force form is known to a few ε of this: the sums that it enters, weighted by its part in each.
+pub fn known_to(system: &ContactSystem, responses: &[Sum], joint: usize) -> f64 {
+    let column = system.stiffness.column(joint);
+    let any_force = (0..column.len()).any(|i| column[i] != 0.0 && !system.is_forced(i));
+    let felt = column.iter().zip(responses).enumerate().filter(|(i, _)| !any_force || !system.is_forced(*i));
+    let (sum, size) = felt.fold((0.0, 0.0), |(sum, size), (_, (entry, response))| {
+        (sum + entry.abs() * response.magnitude, size + entry * entry)
+    });
+    if size > 0.0 { sum / size } else { 0.0 }
+}

@@ -10,10 +10,11 @@
 //!     λ_T = [N Nᵀ/ε + B G⁻¹ R_PP H Bᵀ] (y − y₀) + B H (R_PN z_N + RF_P),     G = BᵀB,   H = (G + ε R_PP)⁻¹,   BᵀN = 0
 //! ```
 //! so that R of the yielding system is symmetric, regular where the structure stands, and differs from that of the
-//! structure by rounding only in motions that its joints can make. Its answer is taken to that of the structure by
-//! multipliers (Hestenes, "Multiplier and gradient methods", 1969): y = B p + y₀ + ε (λ − λ′) with λ′ of the answer
-//! before, until λ is λ′. Where self-stress leaves forces undetermined the first answer is, up to ε, that of least
-//! norm, and it stays.
+//! structure by rounding only in motions that its joints can make. From its answer Newton's method goes on with the joints
+//! as they are ([`super::cone::MixedProblem`]); where that leads nowhere multipliers bring it nearer (Hestenes, "Multiplier
+//! and gradient methods", 1969): y = B p + y₀ + ε (λ − λ′) with λ′ of the answer before. Where self-stress leaves forces
+//! undetermined the first answer is, up to ε, that of least norm, and it stays. Multipliers alone lead on, until λ is λ′,
+//! under a load that is none of the cases.
 
 use std::sync::Arc;
 
@@ -22,7 +23,6 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use super::pivoted::orthonormal;
 use super::problem::ContactProblem;
 use super::sum::Sum;
-use super::sums::joint_forces;
 use super::system::{ContactSystem, JointLoad, Yielding};
 use super::written::power_of_two;
 
@@ -179,31 +179,7 @@ impl Yielding {
         let of_cases = ContactProblem::new(&problem.system, Vec::new(), &problem.factors);
         (!problem.factors.is_empty() && of_cases.load == problem.load)
             .then(|| ContactProblem::new(&self.exact, problem.laws.clone(), &problem.factors))
-    }
-
-    /// Puts what the joints really do in place of what the yielding ones do: z of the repeated joints follows from
-    /// that of the others, and λ of those from R. What is held at 0 stays there. Nothing under a load that is none of
-    /// the cases.
-    pub fn put_exactly(&self, problem: &ContactProblem, z: &mut DVector<f64>, forces: &mut [Sum]) {
-        let Some(exact) = self.exactly(problem) else { return };
-        // λ of joints that yield is known to the rounding of its terms, and so is their z.
-        for &joint in &self.joints {
-            if z[joint].abs() <= self.compliance * forces[joint].error() {
-                z[joint] = 0.0;
-            }
-            forces[joint].value = forces[joint].cleaned();
-        }
-        let mut unknowns = z.clone();
-        for (joint, unknown) in unknowns.iter_mut().enumerate().filter(|(joint, _)| self.exact.is_forced(*joint)) {
-            *unknown = forces[joint].value;
-        }
-        for (joint, response) in joint_forces(&exact, &unknowns).into_iter().enumerate() {
-            if !self.exact.is_forced(joint) {
-                forces[joint].value = response.value;
-            } else if z[joint] != 0.0 {
-                z[joint] = response.cleaned();
-            }
-        }
+            .map(|exact| ContactProblem { cone: problem.cone, polygon: problem.polygon, ..exact })
     }
 
     /// Pairs whose forces a motion z leaves undetermined: those that a self-stress reaches which obeys what the open
@@ -219,13 +195,22 @@ impl Yielding {
             demands.push(row);
         };
         for (i, pair) in system.pairs.iter().enumerate() {
-            let slip = DVector::from_iterator(pair.tangential.len(), pair.tangential.clone().map(|joint| z[joint]));
-            if z[i] > 0.0 {
+            let (law, slip) = (&problem.laws[i], pair.slip(z));
+            let (open, size) = (z[i] > 0.0, slip[0].hypot(slip[1]));
+            if open {
                 demand(&[(i, 1.0)]);
+            }
+            if open || (law.friction() == 0.0 && law.fixed_bound() == 0.0) {
                 pair.tangential.clone().for_each(|joint| demand(&[(joint, 1.0)]));
-            } else if !sticking && slip.norm() > 0.0 {
-                let pressed = slip.normalize() * problem.laws[i].friction();
-                (pair.tangential.clone().zip(pressed.iter())).for_each(|(joint, f)| demand(&[(joint, 1.0), (i, *f)]));
+            } else if !sticking && size > 0.0 && problem.cone {
+                let pressed = slip.map(|slip| law.friction() * slip / size);
+                (pair.tangential.clone().zip(pressed)).for_each(|(joint, f)| demand(&[(joint, 1.0), (i, f)]));
+            } else if !sticking {
+                let slips = problem.polygon.slips(slip).into_iter().enumerate();
+                for (facet, _) in slips.filter(|(_, slip)| *slip > 0.0) {
+                    let along = pair.tangential.clone().zip(problem.polygon.direction(facet));
+                    demand(&along.chain([(i, law.friction())]).collect::<Vec<_>>());
+                }
             }
         }
         let demands = orthonormal(&demands, stress.ncols());

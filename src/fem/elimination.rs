@@ -16,7 +16,7 @@ use super::error::{DependentJoint, Holder, MainSystemError, OverConstraint};
 use super::idle_spins::{IdleSpin, idle_spins};
 use super::joint_rows::{JointReduction, JointRow, holders};
 use super::parts::Parts;
-use super::repeated::{Repeated, by_preference};
+use super::repeated::{Repeated, by_preference, is_explicit};
 use crate::doubled::Real;
 use crate::model::pair::{Joint, JointDirection};
 use crate::model::structure::{Dimension, Structure};
@@ -67,6 +67,20 @@ impl Elimination {
     /// Bodies that supports and ties hold more often than they can move; all joints that supports, ties and bodies
     /// alone hold.
     pub fn repeated(structure: &Structure, dofs: &Dofs, joints: &[Joint]) -> Result<Vec<Repeated>, MainSystemError> {
+        // Where two joints differ by a small angle, a joint across them is independent and not what is left of the second:
+        // what follows from that would be rounded as often as the angle is small.
+        let clearly = Elimination::repeated_in(structure, dofs, joints, true)?;
+        let fits = structure.dimension == Dimension::Space || is_explicit(&clearly, joints);
+        if fits { Ok(clearly) } else { Elimination::repeated_in(structure, dofs, joints, false) }
+    }
+
+    /// The joints that repeat others where those that are `clearly` independent are taken first, or all by preference.
+    fn repeated_in(
+        structure: &Structure,
+        dofs: &Dofs,
+        joints: &[Joint],
+        clearly: bool,
+    ) -> Result<Vec<Repeated>, MainSystemError> {
         let classes = Classes::new(structure, dofs, joints.len());
         let mut reduction = JointReduction::default();
         let bodies = body_rows(structure, dofs, &held_spins(structure));
@@ -74,7 +88,11 @@ impl Elimination {
         reduce_bodies(structure, dofs, &classes, &bodies, beyond_settled, &mut reduction)
             .map_err(MainSystemError::OverConstrained)?;
         let (mut repeated, mut held) = (Vec::new(), Vec::new());
-        for index in by_preference(structure, joints) {
+        let mut order = by_preference(structure, joints);
+        if clearly {
+            order.retain(|&index| reduction.add_clear(JointRow::new(index, &joints[index], dofs, &classes)).is_err());
+        }
+        for index in order {
             let joint = &joints[index];
             let Err(row) = reduction.add(JointRow::new(index, joint, dofs, &classes)) else { continue };
             if let Some(joint) = Repeated::of(index, &row, joints.len()) {

@@ -11,6 +11,9 @@ use crate::model::structure::{Component, Structure};
 /// A coefficient below this share of a unit row counts as zero: the row was dependent on others.
 const DEPENDENT: f64 = 1e-9;
 
+/// A row that the others leave this share of is clearly independent of them: what follows from it is hardly rounded.
+const CLEAR: f64 = 0.25;
+
 /// A pivot on the `node` side is taken if it has this share of the largest coefficient.
 const PREFER_NODE_SIDE: f64 = 0.1;
 
@@ -83,7 +86,17 @@ pub struct JointReduction {
 
 impl JointReduction {
     /// Adds a row, or gives the reduced row back if nothing is left of it.
-    pub fn add(&mut self, mut row: JointRow) -> Result<(), JointRow> {
+    pub fn add(&mut self, row: JointRow) -> Result<(), JointRow> {
+        self.add_above(DEPENDENT, row)
+    }
+
+    /// Adds a row of which the other rows leave a good part, or gives the reduced row back.
+    pub fn add_clear(&mut self, row: JointRow) -> Result<(), JointRow> {
+        self.add_above(CLEAR, row)
+    }
+
+    /// Adds a row of which a coefficient of this size is left.
+    fn add_above(&mut self, least: f64, mut row: JointRow) -> Result<(), JointRow> {
         let hit: Vec<u32> = row.terms.keys().copied().filter(|class| self.slaves.contains_key(class)).collect();
         for class in hit {
             // Present by the filter above; slaves' rows hold no slaves.
@@ -95,7 +108,7 @@ impl JointReduction {
         }
         row.drop_rounding();
         let largest = row.terms.values().fold(0.0_f64, |m, a| m.max(a.abs()));
-        if largest < DEPENDENT {
+        if largest < least {
             return Err(row);
         }
         let best = |candidates: &mut dyn Iterator<Item = (u32, f64)>| {

@@ -5,8 +5,8 @@
 //! ```
 //! The others are independent and make R. Which joints are taken for repeated ones is a choice: normals rather than
 //! tangentials, so that a repeated tangential joint follows from tangential joints alone, and no force of a normal
-//! joint depends on that of a repeated tangential one (contact, `force_form`). Normals that are held both ways come
-//! first.
+//! joint depends on that of a repeated tangential one. Where it does, both joints of the pair must be repeated, or friction
+//! is implicit (contact, `force_form`). Normals that are held both ways come first.
 
 use super::joint_rows::JointRow;
 use crate::model::pair::{Joint, JointDirection};
@@ -30,6 +30,19 @@ impl Repeated {
         let terms: Vec<(usize, f64)> = others.filter(|(j, _)| *j != joint && *j < joints).collect();
         (!terms.is_empty()).then_some(Repeated { joint, terms })
     }
+}
+
+/// Whether no friction of a repeated tangential joint depends on itself: the normal joint of its pair is repeated too, or
+/// feels no repeated tangential joint.
+pub(super) fn is_explicit(repeated: &[Repeated], joints: &[Joint]) -> bool {
+    let is_tangential = |index: usize| joints[index].direction != JointDirection::Normal;
+    let tangential: Vec<&Repeated> = repeated.iter().filter(|one| is_tangential(one.joint)).collect();
+    let is_own = |joint: usize, of: usize| joints[joint].pair == joints[of].pair;
+    tangential.iter().all(|one| {
+        let normal_follows = repeated.iter().any(|other| !is_tangential(other.joint) && is_own(other.joint, one.joint));
+        let felt = |joint: usize| !is_tangential(joint) && is_own(joint, one.joint);
+        normal_follows || !tangential.iter().any(|other| other.terms.iter().any(|(joint, _)| felt(*joint)))
+    })
 }
 
 /// The joints in the order in which they are taken for independent: bilateral normals, tangentials, other normals.

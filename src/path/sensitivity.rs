@@ -8,7 +8,7 @@ use super::rate::{fixed_place, problem_rates, rate, rate_lcp, with_friction_as_c
 use super::start::{PathError, final_basis, state_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{PairState, Slip};
-use crate::contact::cone_rates::{Standing, displacement_rates};
+use crate::contact::cone_rates::{Standing, rates_of_unknowns};
 use crate::contact::force_form::unknowns;
 use crate::contact::problem::ContactProblem;
 use crate::contact::sums::{is_still, joint_forces};
@@ -119,6 +119,7 @@ pub fn sensitivity(case: Case<'_>, solved: &Solved) -> Result<Sensitivity, PathE
         let (prepared, growing) =
             grown.as_ref().map_or((prepared, &[][..]), |grown| (&*grown.prepared, &grown.growing[..]));
         let loaded = prepared.system().unwrap_or(system);
+        let loaded = loaded.yielding.as_ref().map_or(loaded, |yielding| &yielding.exact);
         let rates = problem_rates(prepared, loaded, values, name, growing);
         parameters.push(ParameterRate {
             parameter: name.clone(),
@@ -140,12 +141,32 @@ enum End<'a> {
         basis: Basis,
         point: Point,
     },
-    /// Of Newton's method, on Coulomb's cone.
-    Cone { solved: &'a Solved, problem: &'a ContactProblem },
+    /// Of Newton's method, on Coulomb's cone; joints that repeat one another as they are.
+    Cone { solved: &'a Solved, problem: ContactProblem },
 }
 
 fn singular() -> PathError {
     PathError::Missing("the equations of the final scheme are singular: there are no derivatives".to_owned())
+}
+
+fn undetermined(system: &ContactSystem) -> PathError {
+    let refusal = system.dependence_refusal("sensitivity").unwrap_or_default();
+    PathError::Missing(format!("{refusal}: how they share their forces has no derivative of its own"))
+}
+
+/// The problem with joints that repeat one another as they are, where its motion determines what they carry.
+fn with_repeated_joints(problem: &ContactProblem, solved: &Solved) -> Result<ContactProblem, PathError> {
+    let Some(yielding) = &problem.system.yielding else { return Ok(problem.clone()) };
+    let mut z = DVector::zeros(problem.system.joint_count());
+    for (i, (pair, shown)) in problem.system.pairs.iter().zip(&solved.answer.pairs).enumerate() {
+        z[i] = shown.z_n;
+        let slip = shown.space.map_or([0.0; 2], |space| space.z_t);
+        pair.tangential.clone().zip(slip).for_each(|(joint, slip)| z[joint] = slip);
+    }
+    match yielding.exactly(problem) {
+        Some(exact) if yielding.undetermined(problem, &z, false).is_empty() => Ok(exact),
+        _ => Err(undetermined(&problem.system)),
+    }
 }
 
 impl<'a> End<'a> {
@@ -153,11 +174,10 @@ impl<'a> End<'a> {
         let nothing = || PathError::Missing("there is no answer whose derivatives could be taken".to_owned());
         let RunData::Contact { contact, problem, .. } = &solved.run else { return Err(nothing()) };
         if system.is_in_space() {
-            if let Some(refusal) = system.dependence_refusal("sensitivity") {
-                return Err(PathError::Missing(refusal));
-            }
             return match &solved.answer.polygon {
-                Some(polygon) if solved.answer.is_answer() && polygon.cone => Ok(End::Cone { solved, problem }),
+                Some(polygon) if solved.answer.is_answer() && polygon.cone => {
+                    Ok(End::Cone { problem: with_repeated_joints(problem, solved)?, solved })
+                }
                 Some(_) if solved.answer.is_answer() => Err(PathError::Missing(
                     "`sensitivity` follows an answer on Coulomb's cone, and this one is on the polygon: `set cone on`, or \
                      more facets, may lead to one"
@@ -170,10 +190,7 @@ impl<'a> End<'a> {
         // Afresh, forces included: a warm answer keeps only its displacements.
         let point = vertex(&contact.lcp, &basis).ok_or_else(singular)?;
         if system.force_form.is_some() && !state_of(problem, contact, &point).free.is_empty() {
-            let refusal = system.dependence_refusal("sensitivity").unwrap_or_default();
-            return Err(PathError::Missing(format!(
-                "{refusal}: how they share their forces has no derivative of its own"
-            )));
+            return Err(undetermined(system));
         }
         Ok(End::Scheme { system, solved, contact, problem, basis, point })
     }
@@ -251,9 +268,13 @@ fn rates_on_cone(
         slip: pair.space.map_or([0.0; 2], |space| space.z_t),
     };
     let standing: Vec<Standing> = pairs.iter().map(standing).collect();
-    let z = displacement_rates(problem, rates, &standing)?;
-    let forces = joint_forces(rates, &z);
-    let z = DVector::from_fn(z.len(), |k, _| if is_still(system, &z, &forces, k) { 0.0 } else { z[k] });
+    let unknowns = rates_of_unknowns(problem, rates, &standing)?;
+    let responses = joint_forces(rates, &unknowns);
+    let still = |k: usize| is_still(system, &unknowns, &responses, k);
+    let unknowns = DVector::from_fn(unknowns.len(), |k, _| if still(k) { 0.0 } else { unknowns[k] });
+    let response = |k: usize| responses[k].cleaned();
+    let z = DVector::from_fn(unknowns.len(), |k, _| if system.is_forced(k) { response(k) } else { unknowns[k] });
+    let force = |k: usize| if system.is_forced(k) { unknowns[k] } else { response(k) };
     let mut shown = pairs.to_vec();
     prepared.add_released_slips(&mut shown, rates, &z);
     // d|v| = v·dv / |v|.
@@ -266,13 +287,13 @@ fn rates_on_cone(
         let mut x_t = [0.0; 2];
         let mut z_t = shown[i].space.map_or([0.0; 2], |space| space.z_t);
         for (t, joint) in pair.tangential.clone().enumerate() {
-            x_t[t] = if at.bound == 0.0 { 0.0 } else { forces[joint].cleaned() };
+            x_t[t] = if at.bound == 0.0 { 0.0 } else { force(joint) };
             z_t[t] = z[joint];
         }
         let own = at.space.map_or([[0.0; 2]; 2], |space| [space.x_t, space.z_t]);
         PairRate {
             pair: pair.id.clone(),
-            x_n: if open { 0.0 } else { forces[i].cleaned() },
+            x_n: if open { 0.0 } else { force(i) },
             x_t: of_size(own[0], x_t),
             z_n: z[i],
             z_t: of_size(own[1], z_t),

@@ -198,6 +198,8 @@ impl Prepared {
                 attempt.facets = Some(polygon.facets());
                 attempt.turn = Some(polygon.turn().to_degrees()).filter(|turn| *turn != 0.0);
             }
+        } else if answer.is_answer() {
+            state = cone::with_repeated(&problem, state, watch)?;
         }
         let problem = &problem;
         answer.pairs = pair_states(problem, &contact, &state);
@@ -238,11 +240,6 @@ fn run_engine(
     watch: &dyn Watch,
 ) -> Result<(Run, Option<Parametric>), SolveError> {
     let system = &*problem.system;
-    if system.yielding.is_some() && !problem.cone {
-        // Multipliers exist only for the cone.
-        let refusal = system.dependence_refusal("cone off").unwrap_or_default();
-        return Err(SolveError::Value(format!("{refusal}: `set cone on`")));
-    }
     let tie_rule = contact.tie_rule(rules.tie_break);
     let (run, dictionary) = match rules.engine {
         Engine::Scheme => keep_scheme(&contact.lcp, tie_rule, watch),

@@ -3,11 +3,13 @@
 use super::error::SolveError;
 use super::prepared::Prepared;
 use super::state::Solved;
+use crate::answer::check::check_contact;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{Check, OutcomeKind, PolygonRecord};
 use crate::contact::cone::ConeFailure;
-use crate::contact::on_cone::OnCone;
+use crate::contact::on_cone::{OnCone, with_repeated_joints};
 use crate::contact::problem::ContactProblem;
+use crate::contact::sum::Sum;
 use crate::explain::certificate::certify;
 use crate::explain::misfit::misfit;
 use crate::explain::motions::FreeMotions;
@@ -31,6 +33,7 @@ pub(super) struct InSpace {
 /// Stopped from outside.
 pub(super) fn taken(problem: &ContactProblem, polygon: JointState, watch: &dyn Watch) -> Result<InSpace, SolveError> {
     let mut record = PolygonRecord::of(problem.polygon);
+    let polygon = with_repeated(problem, polygon, watch)?;
     let own = |record, note| InSpace {
         state: polygon.clone(),
         problem: ContactProblem { cone: false, ..problem.clone() },
@@ -58,6 +61,27 @@ pub(super) fn taken(problem: &ContactProblem, polygon: JointState, watch: &dyn W
             let note = format!("{failure}; this is the answer on the polygon of {facets} facets: {circle}");
             Ok(own(record, Some(note)))
         }
+    }
+}
+
+/// The answer on a polygon that is solved for its own sake, its joints that repeat one another as they are and not as
+/// they yield; in the plane the answer where rounding spoiled what the pivots say of such joints.
+pub(super) fn with_repeated(
+    problem: &ContactProblem,
+    state: JointState,
+    watch: &dyn Watch,
+) -> Result<JointState, SolveError> {
+    let spoiled = match problem.system.yielding {
+        Some(_) => !problem.cone,
+        None => problem.system.force_form.is_some() && !check_contact(problem, &state, None).passed,
+    };
+    if !spoiled {
+        return Ok(state);
+    }
+    let forces: Vec<Sum> = (0..state.z.len()).map(|joint| state.sum(joint)).collect();
+    match with_repeated_joints(problem, (&state.z, &forces), watch) {
+        Ok(found) => Ok(found.map_or(state, |found| JointState::of_mixed(problem, found))),
+        Err(_) => Err(SolveError::Interrupted),
     }
 }
 

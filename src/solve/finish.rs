@@ -140,23 +140,23 @@ impl Prepared {
                 }
             }
             Geometry::Contact { system, .. } => {
-                let Some(file) = &system.file else {
+                let file = system.yielding.as_ref().map_or(&system.file, |yielding| &yielding.exact.file);
+                let Some(file) = file else {
                     return;
                 };
-                if system.force_form.is_some() {
+                let load = file.load(&problem.factors);
+                let slips = if system.repeats_joints() {
                     let mut forces = DVector::zeros(system.joint_count());
                     for (i, (pair, shown)) in system.pairs.iter().zip(&*pairs).enumerate() {
                         forces[i] = shown.x_n;
-                        pair.plane_tangential().into_iter().for_each(|joint| forces[joint] = shown.x_t);
+                        let along = shown.space.map_or([shown.x_t, 0.0], |space| space.x_t);
+                        pair.tangential.clone().zip(along).for_each(|(joint, force)| forces[joint] = force);
                     }
-                    let slips = file.slips_under(&forces, &file.load(&problem.factors));
-                    for (&pair, slip) in file.released_pairs.iter().zip(slips.iter()) {
-                        pairs[pair].z_t = *slip;
-                    }
-                    return;
-                }
-                let moved = problem.dislocation(z);
-                let slips = file.forces(&moved, &moved.abs(), &file.load(&problem.factors)).slips;
+                    file.slips_under(&forces, &load)
+                } else {
+                    let moved = problem.dislocation(z);
+                    file.forces(&moved, &moved.abs(), &load).slips
+                };
                 let mut slips = file.released_pairs.iter().zip(slips.iter());
                 while let Some((&pair, along)) = slips.next() {
                     match &mut pairs[pair].space {

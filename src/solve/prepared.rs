@@ -146,7 +146,7 @@ pub fn prepare_at(scenario: &Scenario, values: &ParameterValues, watch: &dyn Wat
 fn given_problem(scenario: &Scenario, error: GivenError) -> PrepareError {
     let path = match &error {
         GivenError::Indefinite { key, .. } => format!("contact_system.{key}"),
-        GivenError::Held { .. } | GivenError::SingularInSpace => "contact_system.compliance".to_owned(),
+        GivenError::Held { .. } | GivenError::NearlySingular { .. } => "contact_system.compliance".to_owned(),
         GivenError::Unheld { case, .. } => format!("contact_system.loads.{case}"),
     };
     PrepareError::Problems(scenario.problem_at(&path, error.to_string(), ""))

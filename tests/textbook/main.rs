@@ -21,6 +21,7 @@ mod loads;
 mod meshes;
 mod method;
 mod mortar;
+mod pairs_at_a_node;
 mod plates;
 mod press_fit;
 mod random_structures;

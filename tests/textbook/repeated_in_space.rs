@@ -9,6 +9,8 @@
 use nalgebra::{Rotation3, Vector3};
 use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, OutcomeKind, RayClass, State, Verdict};
+use stickslip::model::rules::Rules;
+use stickslip::path::sensitivity::sensitivity;
 
 use super::guides::{CLEARANCES, EA, EI, L, with_clearances};
 use crate::common::*;
@@ -199,4 +201,108 @@ fn a_row_of_blocks_slides_as_one() {
     }
     let answer = case.solve(&[("H", f * weight * (1.0 + 1e-4))]);
     assert_eq!(answer.ray.expect("a collapse").verdict, Some(Verdict::Certified));
+}
+
+/// `cone off`: the answer on the polygon of 8 facets, exact along a facet and 1/cos 22.5° too strong between two. Pulled
+/// along the bar the guide holds f x; pulled at 22.5° from it, it holds what the cone does not.
+#[test]
+fn a_guide_on_its_polygon() {
+    let case = guided(&Rotation3::identity(), &SIDES);
+    let off = Rules { cone: false, ..case.scenario.rules };
+    let (f, corner) = (0.3, std::f64::consts::FRAC_PI_8);
+    for (p, t) in [(1.0, 0.2), (1.0, 0.5), (-1.0, 0.7), (0.02, 0.3)] {
+        let answer = case.solve_under(&[("P", p), ("T", t)], off);
+        is_answer(&answer);
+        assert!(!answer.polygon.expect("in space").cone);
+        let right = with_clearances(p, t, CLEARANCES, f);
+        near_all("x", &of_pairs(&answer, |pair| pair.x_n), &right.x, 1e-10);
+        near("slip", answer.pairs[0].slip()[0], right.slip, 1e-10, 0.01);
+        let friction: f64 = answer.pairs.iter().map(|pair| pair.friction()[0]).sum();
+        near("friction", friction, right.friction, 1e-10, 1.0);
+    }
+    // Without clearance below, so that only the friction of the lower side holds the tip along x and z: x = P.
+    for (share, slips) in [(0.99, false), (1.01, true)] {
+        let held = share * f / corner.cos();
+        let set = [("P", 1.0), ("g1", 0.0), ("T", held * corner.cos()), ("N", held * corner.sin())];
+        let answer = case.solve_under(&set, off);
+        is_answer(&answer);
+        near("pressed", answer.pairs[0].x_n, 1.0, 1e-10, 1.0);
+        assert_eq!(answer.pairs[0].state == State::Slip, slips, "{share}");
+        assert_eq!(case.solve(&set).pairs[0].state, State::Slip, "the cone holds f only");
+    }
+}
+
+/// Derivatives of the guide with clearances, while the tip slips on its lower side: x = P − k g1, k_a u = T − f x.
+#[test]
+fn sensitivities_of_a_guide_in_space() {
+    let (k, k_a, f) = (3.0 * EI / L.powi(3), EA / L, 0.3);
+    for rotation in turned() {
+        let case = guided(&rotation, &SIDES);
+        let solved = case.solved(&[("T", 0.5)], case.scenario.rules);
+        let mut values = case.scenario.parameter_values();
+        values.insert("T".to_owned(), 0.5).expect("a parameter");
+        let found = sensitivity(case.prepared.case(&case.scenario, &values), &solved).expect("rates");
+        let of = |name: &str, pair: usize| {
+            found.parameters.iter().find(|rate| rate.parameter == name).expect("a parameter").pairs[pair].clone()
+        };
+        let pressed = 1.0 - k * 0.01;
+        let along = |name: &str| of(name, 0).space.expect("in space").map(|[along, _]| along);
+        for (name, x_t, z_t, x_n) in [
+            ("f", -pressed, -pressed / k_a, 0.0),
+            ("P", -f, -f / k_a, 1.0),
+            ("T", 0.0, 1.0 / k_a, 0.0),
+            ("g1", f * k, f * k / k_a, -k),
+        ] {
+            near_all(name, &along(name), &[x_t, z_t], 1e-10);
+            near(name, of(name, 0).x_n, x_n, 1e-10, 1.0);
+            // The other side moves with it.
+            near(name, of(name, 1).space.expect("in space")[1][0], z_t, 1e-10, 0.1);
+        }
+        near("clearance", of("g2", 1).z_n, 1.0, 1e-10, 1.0);
+        near("closed", of("g1", 1).z_n, 1.0, 1e-10, 1.0);
+    }
+    // Held on both sides without clearance it shares its forces at will, and that has no derivative.
+    let case = guided(&Rotation3::identity(), &SIDES);
+    let mut values = case.scenario.parameter_values();
+    for gap in ["g1", "g2"] {
+        values.insert(gap.to_owned(), 0.0).expect("a parameter");
+    }
+    let solved = case.prepared.case(&case.scenario, &values).solve().expect("solved");
+    let refused = sensitivity(case.prepared.case(&case.scenario, &values), &solved).expect_err("undetermined");
+    assert!(refused.to_string().contains("no derivative of its own"), "{refused}");
+}
+
+/// The guide given by its compliance W = B K⁻¹ Bᵀ of rank 3, B the rows n, t1, t2 of both sides: its answers are those of
+/// the structure.
+#[test]
+fn a_singular_compliance_in_space() {
+    let compliance = Vector3::new(L / EA, L.powi(3) / (3.0 * EI), L.powi(3) / (3.0 * EI));
+    let rows: Vec<Vector3<f64>> =
+        [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+            .map(Vector3::from)
+            .to_vec();
+    let moved =
+        |force: Vector3<f64>| rows.iter().map(|row| row.dot(&compliance.component_mul(&force))).collect::<Vec<_>>();
+    let matrix: Vec<Vec<f64>> = rows.iter().map(|row| moved(*row)).collect();
+    let case = Case::json(json!({
+        "parameters": { "P": 1, "T": 0, "f": 0.3 },
+        "contact_system": {
+            "pairs": ["low", "up"], "tangents": 2, "compliance": matrix, "friction": ["f", "f"], "gap": CLEARANCES,
+            "loads": { "push": { "factor": "P", "vector": moved(Vector3::new(0.0, -1.0, 0.0)) },
+                       "pull": { "factor": "T", "vector": moved(Vector3::new(1.0, 0.0, 0.0)) } }
+        }
+    }));
+    let off = Rules { cone: false, ..case.scenario.rules };
+    for (p, t) in [(1.0, 0.0), (1.0, 0.2), (1.0, 0.5), (-1.0, 0.7), (0.02, 0.3)] {
+        for rules in [case.scenario.rules, off] {
+            let answer = case.solve_under(&[("P", p), ("T", t)], rules);
+            is_answer(&answer);
+            let right = with_clearances(p, t, CLEARANCES, 0.3);
+            near_all("x", &of_pairs(&answer, |pair| pair.x_n), &right.x, 1e-10);
+            near_all("z", &of_pairs(&answer, |pair| pair.z_n), &right.gaps, 1e-10);
+            answer.pairs.iter().for_each(|pair| near("slip", pair.slip()[0], right.slip, 1e-10, 0.01));
+            let friction: f64 = answer.pairs.iter().map(|pair| pair.friction()[0]).sum();
+            near("friction", friction, right.friction, 1e-10, 1.0);
+        }
+    }
 }

@@ -11,6 +11,7 @@
 //! A pair has none, one or two tangential joints: the plane is the case of one.
 
 mod check;
+mod mixed;
 mod natural_map;
 mod newton;
 mod polish;
@@ -22,6 +23,7 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 pub use check::ConeCheck;
+pub use mixed::{MixedProblem, MixedState};
 
 use super::law::{PairLaw, TangentialJoint};
 use super::sum::Sum;
@@ -134,9 +136,9 @@ pub fn answer_on_cone(
     let mut from = start.clone();
     for sweeps in SWEEPS {
         projection::sweep(problem, &scale, &mut from, sweeps, watch)?;
-        let search = newton::search(problem, &scale, from.clone(), watch)?;
+        let search = newton::by_displacements(problem, &scale, from.clone(), watch)?;
         steps += search.steps;
-        let point = polish::polished(problem, search.z, &search.states);
+        let point = polish::polished(problem, search.at, &search.map.branches);
         let forces = problem.forces(&point.bending);
         let check = ConeCheck::of(problem, &point.z, &forces);
         if check.passed {
@@ -208,7 +210,7 @@ impl ConeProblem<'_> {
     }
 
     /// λ = R z + load with the magnitudes of its terms; of a condensed R √(R_ii R_kk) stands for |R_ik| in them.
-    fn forces(&self, z: &DVector<f64>) -> Vec<Sum> {
+    pub(super) fn forces(&self, z: &DVector<f64>) -> Vec<Sum> {
         let root = |joint: usize| self.stiffness[(joint, joint)].max(0.0).sqrt();
         let mut values: Vec<f64> = self.load.iter().copied().collect();
         let mut terms: Vec<f64> =
@@ -280,7 +282,7 @@ impl ConeProblem<'_> {
         point
     }
 
-    fn states(&self, z: &DVector<f64>) -> Vec<ConeState> {
+    pub(super) fn states(&self, z: &DVector<f64>) -> Vec<ConeState> {
         let state = |(i, pair): (usize, &ConePair)| match z[i] > 0.0 {
             true => ConeState::Open,
             false if !pair.rubs() => ConeState::Closed,
@@ -290,7 +292,7 @@ impl ConeProblem<'_> {
         self.pairs.iter().enumerate().map(state).collect()
     }
 
-    fn slip_difference(&self, z: &DVector<f64>, start: &DVector<f64>) -> f64 {
+    pub(super) fn slip_difference(&self, z: &DVector<f64>, start: &DVector<f64>) -> f64 {
         let (mut largest, mut difference) = (0.0_f64, 0.0_f64);
         for pair in self.pairs {
             let (slip, from) = (pair.tangential(z), pair.tangential(start));

@@ -7,8 +7,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::natural_map::{Branch, NaturalMap};
-use super::{ConeFailure, ConeProblem, across};
+use super::natural_map::{Admitted, NaturalMap};
+use super::{ConeFailure, ConeProblem};
 use crate::watch::Watch;
 use stickslip_numerics::decompositions::{Cholesky, Factor};
 
@@ -25,22 +25,34 @@ const FALL: f64 = 1e-4;
 
 /// Where a search ended: in an answer, or where no step leads down.
 pub(super) struct Search {
-    pub z: DVector<f64>,
-    pub states: Vec<Branch>,
+    /// The unknowns.
+    pub at: DVector<f64>,
+    pub map: NaturalMap,
     pub steps: usize,
 }
 
-/// Searches from z.
-pub(super) fn search(
-    problem: &ConeProblem,
-    scale: &DVector<f64>,
-    mut z: DVector<f64>,
-    watch: &dyn Watch,
-) -> Result<Search, ConeFailure> {
-    let mut map = NaturalMap::at(problem, scale, &z, &problem.forces(&z));
+/// Laws whose natural map is to become zero.
+pub(super) trait Searched {
+    /// The map where the unknowns have these values.
+    fn map(&self, at: &DVector<f64>) -> NaturalMap;
+
+    /// Newton's step, and what may be tried in its place; `None` where there is none.
+    fn step(&self, at: &DVector<f64>, map: &NaturalMap, kind: Step) -> Option<DVector<f64>>;
+}
+
+/// How a step is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Step {
+    Newton,
+    Damped,
+}
+
+/// Searches from these values of the unknowns.
+pub(super) fn search(laws: &dyn Searched, mut at: DVector<f64>, watch: &dyn Watch) -> Result<Search, ConeFailure> {
+    let mut map = laws.map(&at);
     let mut steps = 0;
     let mut norms = vec![map.norm];
-    let mut best = (z.clone(), map.clone());
+    let mut best = (at.clone(), map.clone());
     while steps < STEPS && !map.is_zero {
         if steps >= PATIENCE && best.1.norm > 0.5 * least(&norms[..=steps - PATIENCE]) {
             break;
@@ -48,45 +60,90 @@ pub(super) fn search(
         if watch.stop() {
             return Err(ConeFailure::Stopped);
         }
-        let equations = Equations::at(problem, scale, &z, &map);
         let below = norms.iter().rev().take(MEMORY).fold(0.0, |a: f64, norm| a.max(*norm));
-        let next = [Equations::newton, Equations::damped]
-            .iter()
-            .find_map(|solve| shortened(problem, scale, (&z, below), &solve(&equations, map.norm)?));
+        let next = [Step::Newton, Step::Damped]
+            .into_iter()
+            .find_map(|kind| shortened(laws, (&at, below), &laws.step(&at, &map, kind)?));
         let Some((point, next)) = next else { break };
-        (z, map) = (point, next);
+        (at, map) = (point, next);
         steps += 1;
         norms.push(map.norm);
         if map.is_zero || map.norm < best.1.norm {
-            best = (z.clone(), map.clone());
+            best = (at.clone(), map.clone());
         }
     }
-    let (z, map) = best;
-    Ok(Search { z, states: map.branches, steps })
+    let (at, map) = best;
+    Ok(Search { at, map, steps })
+}
+
+/// Goes on by whole steps of Newton's method, whatever becomes of the map on the way.
+pub(super) fn full_steps(laws: &dyn Searched, at: DVector<f64>, watch: &dyn Watch) -> Result<Search, ConeFailure> {
+    let map = laws.map(&at);
+    let mut search = Search { at, map, steps: 0 };
+    while search.steps < STEPS && !search.map.is_zero {
+        if watch.stop() {
+            return Err(ConeFailure::Stopped);
+        }
+        let Some(step) = laws.step(&search.at, &search.map, Step::Newton) else { break };
+        search.at += step;
+        search.map = laws.map(&search.at);
+        search.steps += 1;
+    }
+    Ok(search)
 }
 
 fn least(norms: &[f64]) -> f64 {
     norms.iter().fold(f64::INFINITY, |a, norm| a.min(*norm))
 }
 
-/// The first of the step from z, its half, its quarter … on which the natural map comes `below`.
+/// The first of the step, its half, its quarter … on which the natural map comes `below`.
 fn shortened(
-    problem: &ConeProblem,
-    scale: &DVector<f64>,
-    (z, below): (&DVector<f64>, f64),
+    laws: &dyn Searched,
+    (at, below): (&DVector<f64>, f64),
     step: &DVector<f64>,
 ) -> Option<(DVector<f64>, NaturalMap)> {
     let mut share = 1.0;
     for _ in 0..=HALVINGS {
         // A full step ends exactly where it points: z − z is 0.
-        let point = z + share * step;
-        let next = NaturalMap::at(problem, scale, &point, &problem.forces(&point));
+        let point = at + share * step;
+        let next = laws.map(&point);
         if next.norm <= (1.0 - FALL * share) * below || next.is_zero {
             return Some((point, next));
         }
         share *= 0.5;
     }
     None
+}
+
+/// Searches the answer of a problem from displacements z; `scale`: r of every joint.
+pub(super) fn by_displacements(
+    problem: &ConeProblem,
+    scale: &DVector<f64>,
+    z: DVector<f64>,
+    watch: &dyn Watch,
+) -> Result<Search, ConeFailure> {
+    search(&ByDisplacements { problem, scale }, z, watch)
+}
+
+/// The laws of a problem, by its displacements.
+struct ByDisplacements<'a> {
+    problem: &'a ConeProblem<'a>,
+    scale: &'a DVector<f64>,
+}
+
+impl Searched for ByDisplacements<'_> {
+    fn map(&self, z: &DVector<f64>) -> NaturalMap {
+        let forces = self.problem.forces(z);
+        NaturalMap::at((self.problem.pairs, Admitted::Disk), self.scale, (z, &z.abs()), &forces)
+    }
+
+    fn step(&self, z: &DVector<f64>, map: &NaturalMap, kind: Step) -> Option<DVector<f64>> {
+        let equations = Equations::at(self.problem, self.scale, z, map);
+        match kind {
+            Step::Newton => equations.newton(),
+            Step::Damped => equations.damped(map.norm),
+        }
+    }
 }
 
 /// Φ + DΦ δ = 0, dimensionless (rows and unknowns over √r): what is held goes to z = 0, the others have the equations.
@@ -138,7 +195,7 @@ impl Equations {
             let Some(outside) = branch.outside else { continue };
             for (t, joint) in pair.tangents.clone().enumerate() {
                 for (u, other) in pair.tangents.clone().enumerate() {
-                    add(place[joint], f64::from(t == u) - outside.ratio * across(outside.along, t, u), other);
+                    add(place[joint], f64::from(t == u) - outside.turned[t][u], other);
                 }
                 if branch.is_closed && !pair.law.is_bilateral() {
                     add(place[joint], -pair.friction() * outside.along[t], i);
@@ -150,7 +207,7 @@ impl Equations {
             for (t, joint) in pair.tangents.clone().enumerate() {
                 let at = place[joint];
                 for (u, other) in pair.tangents.clone().enumerate() {
-                    rows[(place[other], at)] += outside.ratio * scale[joint] * across(outside.along, t, u);
+                    rows[(place[other], at)] += scale[joint] * outside.turned[t][u];
                 }
                 if branch.is_closed && !pair.law.is_bilateral() {
                     right[at] += pair.friction() * outside.along[t] * scale[i] * z[i];
@@ -169,23 +226,27 @@ impl Equations {
     }
 
     /// Newton's step; `None` where the equations are singular.
-    fn newton(&self, _: f64) -> Option<DVector<f64>> {
+    fn newton(&self) -> Option<DVector<f64>> {
         Some(self.step(&Factor::new(self.matrix.clone()).solve(&self.right)?))
     }
 
-    /// The step of Levenberg and Marquardt, damped the less the smaller the natural map is; it exists where the
-    /// equations are singular, too.
+    /// See [`damped`].
     fn damped(&self, norm: f64) -> Option<DVector<f64>> {
-        let n = self.moving.len();
-        let mut normal = self.matrix.tr_mul(&self.matrix);
-        let size = normal.diagonal().amax();
-        let length = self.right.norm();
-        let damping = size * (norm / (norm + length)).clamp(1e-8, 1.0) * 1e-2;
-        for at in 0..n {
-            normal[(at, at)] += damping;
-        }
-        let mut found = self.matrix.tr_mul(&self.right);
-        Cholesky::new(&normal)?.solve(found.as_mut_slice());
-        found.iter().all(|value| value.is_finite()).then(|| self.step(&found))
+        Some(self.step(&damped(&self.matrix, &self.right, norm)?))
     }
+}
+
+/// The step of Levenberg and Marquardt, damped the less the smaller the natural map is; it exists where the equations
+/// are singular, too.
+pub(super) fn damped(matrix: &DMatrix<f64>, right: &DVector<f64>, norm: f64) -> Option<DVector<f64>> {
+    let mut normal = matrix.tr_mul(matrix);
+    let size = normal.diagonal().amax();
+    let length = right.norm();
+    let damping = size * (norm / (norm + length)).clamp(1e-8, 1.0) * 1e-2;
+    for at in 0..right.len() {
+        normal[(at, at)] += damping;
+    }
+    let mut found = matrix.tr_mul(right);
+    Cholesky::new(&normal)?.solve(found.as_mut_slice());
+    found.iter().all(|value| value.is_finite()).then_some(found)
 }

@@ -1,57 +1,25 @@
 //! A contact system read from a file → joints: tangential joints of frictionless pairs released, kernel exact.
 
+mod error;
+mod rows;
+mod singular;
+
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+pub use self::error::GivenError;
+use self::rows::{Rows, cleaned, joints_in_words, pairs};
+use self::singular::{repeated_in_space, singular_compliance};
 use super::file_data::FileData;
 use super::pivoted::{NullSpace, PivotedCholesky, is_null, orthonormal};
-use super::system::{ContactPair, ContactSystem, ForceForm, JointLoad};
+use super::system::{ContactSystem, JointLoad};
 use crate::lcp::problem::NOISE;
 use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
 use stickslip_numerics::decompositions::smallest_eigenvalue;
 
 /// An eigenvalue below −this makes a matrix unusable, after scaling to unit diagonal.
 const NEGATIVE: f64 = 1e-9;
-
-/// Why a given contact system cannot be used.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum GivenError {
-    /// A matrix with a negative eigenvalue.
-    #[error(
-        "the {} matrix is not positive semidefinite: scaled to unit diagonal, its smallest eigenvalue is \
-         {smallest:.3e}", if *key == "stiffness" { "contact stiffness" } else { "compliance" }
-    )]
-    Indefinite {
-        /// Key of the file.
-        key: &'static str,
-        /// Smallest eigenvalue.
-        smallest: f64,
-    },
-    /// W in which a normal joint that holds both ways does not move under its own force, the other such joints held.
-    #[error(
-        "pair {pair} is held along n both ways (law bound), and the compliance matrix says that no force moves it along n \
-         where the other such pairs hold: leave it out, or give it another law"
-    )]
-    Held {
-        /// Id of the pair.
-        pair: String,
-    },
-    /// Singular W in space.
-    #[error(
-        "the compliance matrix is singular: some joints repeat others, which is solved in the plane only so far; give \
-         `stiffness`, or a compliance in which no joint repeats others"
-    )]
-    SingularInSpace,
-    /// A load acts on a tangential motion of frictionless pairs that nothing resists.
-    #[error("load case {case} pushes frictionless pair {pair} along a tangential motion that nothing resists")]
-    Unheld {
-        /// Load case.
-        case: String,
-        /// A pair that moves.
-        pair: String,
-    },
-}
 
 /// Builds the contact system of a file; the remarks are for the user.
 ///
@@ -79,49 +47,6 @@ fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<(PivotedCholes
         return Err(GivenError::Indefinite { key, smallest: smallest_eigenvalue(&scaled).unwrap_or(null.least) });
     }
     Ok((factor, null))
-}
-
-/// Which rows are kept as joints and which are released, and the frictionless pairs of the released ones.
-struct Rows {
-    kept: Vec<usize>,
-    released: Vec<usize>,
-    pairs: Vec<usize>,
-}
-
-impl Rows {
-    fn of(given: &GivenContactSystem) -> Rows {
-        let (m, tangents) = (given.pairs.len(), given.tangents);
-        let tangential = |i: usize| (0..tangents).map(move |t| m + tangents * i + t);
-        let rubs = |i: &usize| given.laws[*i].has_tangential_joint();
-        let smooth = || (0..m).filter(|i| !rubs(i));
-        Rows {
-            kept: (0..m).chain((0..m).filter(rubs).flat_map(tangential)).collect(),
-            released: smooth().flat_map(tangential).collect(),
-            pairs: smooth().flat_map(|i| (0..tangents).map(move |_| i)).collect(),
-        }
-    }
-
-    fn block(matrix: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
-        DMatrix::from_fn(rows.len(), columns.len(), |a, b| matrix[(rows[a], columns[b])])
-    }
-
-    fn data(
-        self,
-        matrix: DMatrix<f64>,
-        compliance: bool,
-        given: &GivenContactSystem,
-        factor: PivotedCholesky,
-    ) -> FileData {
-        FileData {
-            matrix,
-            compliance,
-            loads: given.loads.iter().map(|load| DVector::from_column_slice(&load.vector)).collect(),
-            kept: self.kept,
-            released: self.released,
-            released_pairs: self.pairs,
-            factor,
-        }
-    }
 }
 
 fn from_stiffness(
@@ -241,7 +166,7 @@ fn joint_loads(
 /// # Errors
 /// A load along a motion that nothing resists.
 pub fn with_loads(system: &ContactSystem, given: &GivenContactSystem) -> Result<ContactSystem, GivenError> {
-    if system.force_form.is_some() {
+    if system.repeats_joints() {
         return given_system(given).map(|(system, _)| system);
     }
     let file = system.file.as_ref().map(|file| {
@@ -250,13 +175,6 @@ pub fn with_loads(system: &ContactSystem, given: &GivenContactSystem) -> Result<
     });
     let loads = joint_loads(given, &system.stiffness, file.as_deref())?;
     Ok(ContactSystem { loads, file, ..system.clone() })
-}
-
-/// start − Σ terms, 0 where rounding alone can have made it, and the sum of all magnitudes.
-fn cleaned(start: f64, terms: &DVector<f64>) -> (f64, f64) {
-    let (value, size) =
-        terms.iter().fold((start, start.abs()), |(value, size), term| (value - term, size + term.abs()));
-    (if value.abs() <= NOISE * size { 0.0 } else { value }, size)
 }
 
 fn from_compliance(
@@ -269,7 +187,7 @@ fn from_compliance(
     let own = Rows::block(&matrix, &rows.kept, &rows.kept);
     let factor = PivotedCholesky::new(&own);
     if factor.rank < rows.kept.len() && given.tangents == 2 {
-        return Err(GivenError::SingularInSpace);
+        return repeated_in_space(given, matrix, rows, &own, factor).map(|system| (system, Vec::new()));
     }
     if factor.rank < rows.kept.len() {
         return singular_compliance(given, matrix, rows, own, factor).map(|system| (system, Vec::new()));
@@ -296,132 +214,12 @@ fn from_compliance(
     Ok((system, Vec::new()))
 }
 
-/// The system of a singular W: all joints in force form except the normals of bound pairs, which are exchanged for
-/// their displacements one by one.
-fn singular_compliance(
-    given: &GivenContactSystem,
-    matrix: DMatrix<f64>,
-    rows: Rows,
-    own: DMatrix<f64>,
-    factor: PivotedCholesky,
-) -> Result<ContactSystem, GivenError> {
-    let k = rows.kept.len();
-    let of_load = |load: &GivenLoad| DVector::from_iterator(k, rows.kept.iter().map(|&row| load.vector[row]));
-    let mut mixed = Mixed { matrix: own.clone(), loads: given.loads.iter().map(of_load).collect() };
-    let mut forced = vec![true; k];
-    for (pair, _) in given.laws.iter().enumerate().filter(|(_, law)| law.is_bilateral()) {
-        if mixed.matrix[(pair, pair)] <= NOISE * own[(pair, pair)].abs() {
-            return Err(GivenError::Held { pair: given.pairs[pair].clone() });
-        }
-        mixed.exchange(pair);
-        forced[pair] = false;
-    }
-    let mut self_stress = factor.null_space(&own).exact;
-    for stress in &mut self_stress {
-        let sizes: Vec<f64> = stress.iter().zip(&factor.scale).map(|(force, scale)| (force * scale).abs()).collect();
-        let noise = NOISE * sizes.iter().fold(0.0, |a: f64, b| a.max(*b));
-        stress.iter_mut().zip(sizes).filter(|(_, size)| *size <= noise).for_each(|(force, _)| *force = 0.0);
-    }
-    let self_stress = if self_stress.is_empty() { DMatrix::zeros(k, 0) } else { DMatrix::from_columns(&self_stress) };
-    let loads = given.loads.iter().zip(mixed.loads);
-    let loads = loads.map(|(load, vector)| JointLoad::exactly(load.name.clone(), vector)).collect();
-    Ok(ContactSystem {
-        pairs: pairs(given),
-        tangents: given.tangents,
-        stiffness: mixed.matrix,
-        loads,
-        rounded: false,
-        kernel: DMatrix::zeros(k, 0),
-        corrected: None,
-        force_form: Some(ForceForm { joints: forced, self_stress }),
-        yielding: None,
-        file: Some(Arc::new(rows.data(matrix, true, given, factor))),
-    })
-}
-
-/// η = H y + h, with one vector h for each load case.
-struct Mixed {
-    matrix: DMatrix<f64>,
-    loads: Vec<DVector<f64>>,
-}
-
-impl Mixed {
-    /// Solves row j for y_j: η_j and y_j change places.
-    fn exchange(&mut self, j: usize) {
-        let a = &mut self.matrix;
-        let (k, pivot) = (a.nrows(), a[(j, j)]);
-        let (row, column) = (a.row(j).into_owned(), a.column(j).into_owned());
-        // What cancels to rounding is not a compliance, nor a displacement.
-        let minus = |value: f64, term: f64| {
-            let rest = value - term;
-            if rest.abs() <= NOISE * (value.abs() + term.abs()) { 0.0 } else { rest }
-        };
-        for i in (0..k).filter(|&i| i != j) {
-            let factor = column[i] / pivot;
-            for l in (0..k).filter(|&l| l != j) {
-                a[(i, l)] = minus(a[(i, l)], factor * row[l]);
-            }
-            a[(i, j)] = factor;
-            self.loads.iter_mut().for_each(|load| load[i] = minus(load[i], factor * load[j]));
-        }
-        (0..k).filter(|&l| l != j).for_each(|l| a[(j, l)] = -row[l] / pivot);
-        a[(j, j)] = 1.0 / pivot;
-        self.loads.iter_mut().for_each(|load| load[j] = -load[j] / pivot);
-    }
-}
-
-fn pairs(given: &GivenContactSystem) -> Vec<ContactPair> {
-    let mut next = given.pairs.len();
-    (given.pairs.iter().enumerate())
-        .map(|(i, id)| {
-            let first = next;
-            next += if given.laws[i].has_tangential_joint() { given.tangents } else { 0 };
-            ContactPair {
-                id: id.clone(),
-                law: given.laws[i].clone(),
-                position: given.positions.as_ref().map(|s| [s[i], 0.0, 0.0]),
-                frame: None,
-                joint: 0,
-                tangential: first..next,
-            }
-        })
-        .collect()
-}
-
 fn nearly_singular(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64]) -> String {
     format!(
         "the contact stiffness matrix is nearly singular: it resists the motion {} with less than 1e-10 of what its \
          entries would let expect, and yet its digits say that it does; if that motion costs nothing, say so: `kernel`",
         joints_in_words(given, z, scale)
     )
-}
-
-/// `1 z_n of c1, -0.5 z_t of c2`, in space z_t1 and z_t2: the entries of a vector over all joints, largest 1; what is
-/// small after scaling to unit diagonal is left out.
-fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64]) -> String {
-    let (m, tangents) = (given.pairs.len(), given.tangents);
-    let joint = |i: usize| match i.checked_sub(m) {
-        None => ("z_n", i),
-        Some(along) if tangents == 1 => ("z_t", along),
-        Some(along) => (["z_t1", "z_t2"][along % 2], along / 2),
-    };
-    let sizes: Vec<f64> = z.iter().zip(scale).map(|(z, scale)| (z * scale).abs()).collect();
-    let largest = sizes.iter().fold(0.0, |a: f64, b| a.max(*b));
-    let named: Vec<usize> = (0..z.len()).filter(|&i| sizes[i] > 1e-6 * largest).collect();
-    let one = |&i: &usize| {
-        let share = z[i] / z.amax();
-        let share = if share.abs() < 1e-3 {
-            format!("{share:.3e}")
-        } else {
-            format!("{share:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
-        };
-        let (word, pair) = joint(i);
-        format!("{share} {word} of {}", given.pairs[pair])
-    };
-    match named.len() {
-        0..=6 => named.iter().map(one).collect::<Vec<_>>().join(", "),
-        more => format!("{}, … ({more} joints)", named[..5].iter().map(one).collect::<Vec<_>>().join(", ")),
-    }
 }
 
 /// R with the motions exactly in its kernel: (I − Q Qᵀ) S (I − Q Qᵀ) scaled back, where S is R scaled to unit diagonal
