@@ -137,18 +137,15 @@ fn usage(error: &clap::Error, arguments: &[OsString]) -> u8 {
     // the message quotes the arguments: it is made again from their printable form
     let clean = arguments.iter().map(|word| printable::line(&word.to_string_lossy()));
     let shown = Cli::try_parse_from(clean).err().filter(|shown| shown.kind() == error.kind());
+    let hint = (status != 0).then(|| prompt::hint(arguments)).flatten();
     if status != 0 && asks_for_json(arguments) {
-        let text = shown.as_ref().unwrap_or(error).render().to_string();
+        let text = hint.clone().unwrap_or_else(|| shown.as_ref().unwrap_or(error).render().to_string());
         let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
         tell_json(&json_export::problems(&[Problems::of_file("", message, "")]));
     }
     let plain = Style { ascii: look::is_ascii(arguments), ..Style::default() };
     let printed = match shown {
-        _ if status != 0
-            && let Some(hint) = prompt::hint(arguments) =>
-        {
-            writeln!(io::stderr(), "error: {}", plain.text(&hint))
-        }
+        _ if let Some(hint) = hint => writeln!(io::stderr(), "error: {}", plain.text(&hint)),
         Some(shown) if plain.ascii => write_ascii(&shown, &plain),
         Some(shown) => shown.print(),
         None => io::stderr().write_all(printable::text(&error.render().to_string(), false).as_bytes()),

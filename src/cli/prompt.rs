@@ -2,12 +2,15 @@
 
 use std::ffi::OsString;
 use std::io::Write;
+use std::path::Path;
 
 use clap::{CommandFactory, Parser};
 
 use super::Cli;
 use super::ending::Failure;
 use super::look::Look;
+use crate::model::embedded;
+use crate::model::words::did_you_mean_typed;
 use crate::session::language::grammar::exact;
 use crate::session::language::help;
 use crate::text::printable;
@@ -54,13 +57,25 @@ pub fn write_help(word: &str, style: &Style, out: &mut dyn Write) -> Result<u8, 
     Ok(0)
 }
 
-/// How to give a command of the prompt that was given to the shell; `None` where the arguments begin with none, or with one
-/// that the shell has too.
+/// What to do where the first word is a command of the prompt, or no command and no scenario though words follow it; `None`
+/// anywhere else.
 pub fn hint(arguments: &[OsString]) -> Option<String> {
-    hint_of(&printable::line(&arguments.get(1)?.to_string_lossy()))
+    let first = printable::line(&arguments.get(1)?.to_string_lossy());
+    hint_of(&first).or_else(|| {
+        let second = arguments.get(2).map(|word| printable::line(&word.to_string_lossy()))?;
+        if first.starts_with('-') || second.starts_with('-') || is_of_the_shell(&first) {
+            return None;
+        }
+        if embedded::text(&first).is_some() || Path::new(&arguments[1]).exists() {
+            return Some(format!("`{second}` after the scenario `{first}`: one scenario is opened at a time"));
+        }
+        let grammar = Cli::command();
+        let near = did_you_mean_typed(&first, grammar.get_subcommands().map(clap::Command::get_name));
+        Some(format!("unknown command `{first}`{near}; `stickslip --help` lists them"))
+    })
 }
 
-/// The same of the first word.
+/// How to give a command of the prompt; `None` of any other word.
 pub fn hint_of(word: &str) -> Option<String> {
     let line = exact(word).filter(|command| !is_of_the_shell(command.name))?.name;
     Some(format!(

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 use serde::Serialize;
 
-use super::mode::{pair_words, parts};
+use super::mode::{listed_parts, pair_words, parts};
 use super::rigid::{RigidMotion, direction_word};
 use crate::contact::system::ContactSystem;
 use crate::fem::Motion;
@@ -23,7 +23,12 @@ pub struct LoosePart {
 impl LoosePart {
     /// "`upper` can slide along x, lift off and turn; only contact holds it".
     pub fn sentence(&self) -> String {
-        format!("{} can {}; only contact holds it", self.name, list(&self.motions))
+        const OF_A_BODY_IN_SPACE: usize = 6;
+        let motions = match self.motions.len() {
+            OF_A_BODY_IN_SPACE => "move along every axis and turn about every axis".to_owned(),
+            _ => list(&self.motions),
+        };
+        format!("{} can {motions}; only contact holds it", self.name)
     }
 }
 
@@ -59,7 +64,7 @@ pub fn loose_parts(structure: &Structure, motions: &[Motion]) -> Vec<LoosePart> 
             [] => ("the structure".to_owned(), "move as an internal mechanism".to_owned()),
             several => {
                 let names: Vec<String> = several.iter().map(|part| part.name.clone()).collect();
-                (list(&names), "move against each other as a mechanism".to_owned())
+                (listed_parts(&names, "parts"), "move against each other as a mechanism".to_owned())
             }
         };
         match found.iter_mut().find(|part| part.name == name) {

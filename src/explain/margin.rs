@@ -3,12 +3,14 @@
 //! Within one scheme every quantity is linear in the load factors: those margins are exact. In a friction parameter it
 //! is a rational function: that margin comes from a search over a grid and bisection, and says so.
 
+use nalgebra::DVector;
 use serde::Serialize;
 
 use super::vertex::value;
 use crate::contact::lcp::contact_lcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::{Quantity, RowKind};
+use crate::contact::system::JointLoad;
 use crate::contact::written::{ContactLcp, CoveringError};
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
@@ -119,16 +121,17 @@ fn sizes(contact: &ContactLcp, point: &Point) -> (f64, f64) {
     (force, length)
 }
 
-/// Margins in the factor of a load case whose RF per unit is `unit`.
+/// Margins in the factor of a load case; `name` is how it is called in the scenario.
 pub fn load_margin(
     scheme: &FinalScheme,
     pair: usize,
-    name: &str,
+    (name, load): (&str, &JointLoad),
     present: f64,
-    unit: &nalgebra::DVector<f64>,
 ) -> Option<Margin> {
     let unmoved = scheme.problem.laws.iter().map(|law| law.with_gap(0.0).with_fixed_bound(0.0)).collect();
-    let rate = ContactProblem::exactly(&scheme.problem.system, unmoved, unit.clone());
+    let mut rate = ContactProblem::exactly(&scheme.problem.system, unmoved, DVector::zeros(load.vector.len()));
+    rate.add_load(1.0, &load.vector, &load.terms);
+    let rate = rate.without_load_noise();
     // Only M and q of this LCP are used: any covering that can be written will do.
     let change = contact_lcp(&rate, Covering::Ones).ok()?;
     let rates = change.in_units(&vertex(&change.lcp, scheme.basis)?);

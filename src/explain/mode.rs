@@ -37,11 +37,11 @@ impl PartMotion {
 pub struct Mode {
     /// Displacements per node, in the order of the components.
     pub displacements: Vec<[f64; 6]>,
-    /// The parts that move; empty where the motion is not one of rigid bars and plates.
+    /// The parts that move; empty where the motion is not one of rigid parts.
     pub parts: Vec<PartMotion>,
 }
 
-/// A bar, plate, triangle or quad with its nodes.
+/// A bar, plate, triangle, quad or rigid body with its nodes, or a node that is in none of them.
 struct Member {
     id: String,
     nodes: Vec<usize>,
@@ -97,23 +97,17 @@ fn members(structure: &Structure) -> Vec<Member> {
         };
         all.extend(element.parts.iter().map(|part| Member { id: id(&part.nodes), nodes: part.nodes.clone() }));
     }
+    all.extend(structure.rigid.iter().map(|body| Member { id: format!("`{}`", body.id), nodes: body.nodes.clone() }));
+    let mut is_in_one = vec![false; structure.nodes.len()];
+    all.iter().flat_map(|member| &member.nodes).for_each(|&node| is_in_one[node] = true);
+    let alone = (0..structure.nodes.len()).filter(|&node| !is_in_one[node]);
+    all.extend(alone.map(|node| Member { id: format!("node `{}`", structure.nodes[node].id), nodes: vec![node] }));
     all
 }
 
-/// Largest extent of the structure.
+/// Largest extent of the structure; 1 of a structure at one place.
 fn size(structure: &Structure) -> f64 {
-    let span = |axis: usize| {
-        let (low, high) = structure
-            .nodes
-            .iter()
-            .map(|node| node.position[axis])
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        high - low
-    };
-    if structure.nodes.is_empty() {
-        return 1.0;
-    }
-    let size = span(0).max(span(1)).max(span(2));
+    let size = structure.extent().into_iter().fold(0.0, f64::max);
     if size > 0.0 { size } else { 1.0 }
 }
 
@@ -177,12 +171,14 @@ fn centre(structure: &Structure, nodes: &[usize]) -> [f64; 3] {
 }
 
 fn part_name(names: &[String], all: usize) -> String {
-    if names.len() == all && all > 1 {
-        "the whole structure".to_owned()
-    } else if names.len() > 4 {
-        format!("{} to {} ({} members)", names[0], names[names.len() - 1], names.len())
-    } else {
-        list(names)
+    if names.len() == all && all > 1 { "the whole structure".to_owned() } else { listed_parts(names, "members") }
+}
+
+/// All of a few names; of many the first and the last, and how many `things` there are.
+pub(super) fn listed_parts(names: &[String], things: &str) -> String {
+    match names {
+        [first, .., last] if names.len() > 4 => format!("{first} to {last} ({} {things})", names.len()),
+        _ => list(names),
     }
 }
 

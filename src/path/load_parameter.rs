@@ -83,9 +83,17 @@ impl LoadParameter {
         let law = system.pairs.iter().find_map(|pair| {
             let numbers = pair.law.numbers();
             let (what, _) = numbers.into_iter().find(|(_, number)| along.dependence(number) != Dependence::Constant)?;
-            Some(format!("it is the {what} of pair {}", pair.id))
+            Some((what, format!("it is the {what} of pair {}", pair.id)))
         });
-        if let Some(why) = law {
+        if let Some(("friction", why)) = &law
+            && cases.is_empty()
+        {
+            return Err(PathError::Target(format!(
+                "{name} is no load: {why}; `trace {name} to V` follows it, `find least {name} A..B where outcome answer` \
+                 brackets where answers begin"
+            )));
+        }
+        if let Some((_, why)) = law {
             let rest = if cases.is_empty() {
                 "; only loads and friction can be followed exactly, use `sweep` for the others"
             } else {

@@ -11,8 +11,9 @@ use std::io::{self, IsTerminal, Write};
 use crate::session::journal::Journal;
 use crate::session::{Next, Session, places};
 use crate::view::status;
-use crate::view::style::Style;
+use crate::view::style::{Role, Style};
 
+use crate::model::words::counted;
 use crate::signals::{Signals, is_dumb};
 use crate::text::file::reason;
 
@@ -90,12 +91,13 @@ fn greet(session: &Session, style: &Style, out: &mut dyn Write) -> io::Result<()
         }
     }
     if let Some(left) = session.left_over() {
-        let changes = left.changes();
-        let s = if changes == 1 { "" } else { "s" };
-        writeln!(
-            out,
-            "A session in this directory ended without `quit`: `restore` brings back its {changes} change{s}, `restore discard` forgets them."
-        )?;
+        let changes = counted(left.changes(), "change", "changes");
+        let of = left.scenario().map_or(String::new(), |name| format!(" of {name}"));
+        let text = format!(
+            "A session in this directory ended without `quit`: `restore` brings back its {changes}{of}, `restore discard` \
+             forgets them."
+        );
+        style.paragraph(out, Role::Plain, &text)?;
     }
     out.flush()
 }

@@ -116,6 +116,14 @@ impl Session {
         self.place_shown().map_or(Ok(()), |place| style.paragraph(out, Role::Muted, &place))
     }
 
+    /// Writes, after a load history was followed, that what comes is of the answer under all loads at once.
+    pub(super) fn write_not_of_history(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        self.history_place().map_or(Ok(()), |place| {
+            let text = format!("of the answer with every load case acting at once; the tables stand {place}");
+            style.paragraph(out, Role::Muted, &text)
+        })
+    }
+
     /// Writes [`Session::history_place`] ahead of a table that knows no pivots, if there is one.
     pub(super) fn write_history_place(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
         self.history_place().map_or(Ok(()), |place| style.paragraph(out, Role::Muted, &place))

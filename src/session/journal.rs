@@ -113,6 +113,14 @@ impl LeftOver {
         self.records.len().saturating_sub(1)
     }
 
+    /// The scenario of its last change, as it was given.
+    pub fn scenario(&self) -> Option<&str> {
+        self.records.iter().rev().find_map(|record| match record {
+            Record::Start(chosen) | Record::Change(_, chosen) | Record::Saved(chosen) => Some(chosen.scenario.as_str()),
+            Record::Undo | Record::Redo | Record::Auto(_) => None,
+        })
+    }
+
     /// Removes it.
     pub fn discard(self) -> io::Result<()> {
         fs::remove_file(&self.path)

@@ -86,7 +86,7 @@ impl Solved {
             .iter()
             .zip(&problem.factors)
             .zip(&system.loads)
-            .filter_map(|(((name, _), factor), load)| load_margin(&scheme, pair, name, *factor, &load.vector))
+            .filter_map(|(((name, _), factor), load)| load_margin(&scheme, pair, (name, load), *factor))
             .collect();
         let mut names: Vec<&str> = Vec::new();
         for pair in &system.pairs {

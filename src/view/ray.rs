@@ -189,13 +189,18 @@ fn proof_words(report: &RayReport, certificate: &Certificate, system: &ContactSy
     } else {
         "Every sign was verified from the data by more than its rounding."
     };
+    let (work, taken) = (short(certificate.power), short(certificate.dissipation));
+    if certificate.of_this_load {
+        return format!(
+            "motion: {motion}. Per unit of its largest entry the loads do the work {work} on it; friction under the normal \
+             forces that the load alone decides, cohesion and known bounds take at most {taken}. {signs}"
+        );
+    }
     format!(
-        "motion: {motion}. Per unit of its largest entry the loads do the work {} on it; cohesion and known bounds take \
-         at most {}, pressed contact nothing: every pair parts by at least f times its slip. The real motion need not part \
+        "motion: {motion}. Per unit of its largest entry the loads do the work {work} on it; cohesion and known bounds take \
+         at most {taken}, pressed contact nothing: every pair parts by at least f times its slip. The real motion need not part \
          (friction is not associated); that of the proof may, for it only asks whether any forces within friction could \
-         balance the loads. {signs}",
-        short(certificate.power),
-        short(certificate.dissipation)
+         balance the loads. {signs}"
     )
 }
 

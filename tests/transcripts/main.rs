@@ -5,6 +5,7 @@ mod explain_rays;
 mod export;
 mod export_pictures;
 mod export_tables;
+mod first_mistakes;
 mod generated;
 mod help;
 #[path = "../common/lines.rs"]

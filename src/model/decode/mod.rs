@@ -170,6 +170,8 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: 
         Source::ContactSystem(system) => Some(system.loads.iter().map(|load| load.name.as_str()).collect()),
         Source::Lcp(_) => None,
     };
+    // One that could not be read is known all the same: what is wrong with it was said there.
+    let cases = cases.map(|cases| named_besides(cases, &fields));
     if source.dimension() == Dimension::Plane {
         polygon::refuse_in_plane(solver, &SOLVER);
     }
@@ -195,6 +197,10 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: 
         meshes: MeshFiles::default(),
         notes,
     };
+    if root.problems_so_far() > 0 {
+        // Quantities name pairs, nodes and bars, of which some could not be read.
+        return Some(scenario);
+    }
     scenario.probes = match fields.optional("probes") {
         Some(cursor) => measured::probes(cursor, &scenario)?,
         None => Vec::new(),
@@ -204,6 +210,18 @@ fn read(root: Cursor<'_>, name: &str, text: &str, path: Option<PathBuf>, under: 
         None => Vec::new(),
     };
     Some(scenario)
+}
+
+/// The names of load cases with those besides that only the file has.
+fn named_besides<'n>(mut cases: Vec<&'n str>, fields: &Fields<'n>) -> Vec<&'n str> {
+    let of_system = fields.entry("contact_system").and_then(|entry| entry.value().get("loads"));
+    let loads = fields.entry("loads").map(Entry::value).or(of_system);
+    for name in loads.into_iter().flat_map(Cursor::names) {
+        if !cases.contains(&name) {
+            cases.push(name);
+        }
+    }
+    cases
 }
 
 /// What a key says of the load cases; empty without the key. An lcp has none.

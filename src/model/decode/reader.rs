@@ -225,6 +225,16 @@ impl<'d> Cursor<'d> {
         self.value.properties().map(move |(key, _)| Place { offset: key.start(), findings: &self.reading.findings })
     }
 
+    /// The keys of an object, without a word on repeated ones; none where no object stands.
+    pub fn names(self) -> impl Iterator<Item = &'d str> {
+        self.value.properties().filter_map(|(key, _)| key.as_str())
+    }
+
+    /// The value of a key of an object, whatever other keys it has.
+    pub fn get(self, key: &str) -> Option<Self> {
+        self.value.get(key).map(|value| self.at(value))
+    }
+
     /// The entries of an object with fixed keys; any other key is reported.
     pub fn fields(self, known: &[&'static str]) -> Option<Fields<'d>> {
         let entries = self.entries()?;

@@ -68,7 +68,17 @@ impl Limit {
             );
         }
         let Some(beyond) = self.beyond else {
-            return path.end_sentence();
+            return match (&path.end, path.breakpoints.last()) {
+                // a service limit is looked for as well as a collapse: what happens on the way is said
+                (PathEnd::Unbounded, Some(last)) => format!(
+                    "{} lies at {name} = {}, where {}; beyond it nothing changes any more, however large the load \
+                     (`trace {name}` shows the way)",
+                    if path.breakpoints.len() > 1 { "the last change" } else { "the only change" },
+                    nine_digits(last.value),
+                    last.sentence
+                ),
+                _ => path.end_sentence(),
+            };
         };
         format!(
             "the path ends at {name} = {}, but an answer exists at {name} = {}: not the largest load that can be carried; \

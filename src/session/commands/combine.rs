@@ -145,8 +145,7 @@ impl Session {
                 (Row { name: combined.name.clone(), line, values }, report)
             })
             .collect();
-        let shown =
-            name.map(|name| format!("the answer of combination {name} is shown until the next change or `solve`"));
+        let shown = name.map(|name| format!("combination {name} is what is shown until the next change or `solve`"));
         let rays = all.iter().filter(|one| one.solved.answer.ray.is_some() && !probes.is_empty());
         let notes: Vec<String> = rays
             .filter_map(|one| Some(format!("{}: {}", one.name, view::status::ray_note(&one.solved.answer, &units)?)))

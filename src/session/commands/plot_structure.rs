@@ -111,7 +111,7 @@ impl Session {
         io: &mut Output<'_>,
     ) -> Result<(), CommandError> {
         let look = Look::read(of)?;
-        let loads = look.loads.unwrap_or(loads).then_some((&self.now.values, &self.now.scenario.units));
+        let loads = look.loads.unwrap_or(loads).then_some((self.quantity_factors(), &self.now.scenario.units));
         io.show(shown, |out, style| {
             let picture = shown.picture(height.unwrap_or(STRUCTURE_HEIGHT));
             structure::write(out, &scene::Picture { magnification: look.scale, ..picture }, loads, style)

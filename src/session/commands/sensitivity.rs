@@ -59,7 +59,10 @@ impl Session {
             let place = place_beside_laws(&self.now.scenario, name).unwrap_or_default();
             return Err(no_derivatives(name, &format!("the loads are not a linear function of it: {place}")));
         }
-        io.show(&found, |out, style| view::sensitivity::write(out, &found, parameter, style))?;
+        io.show(&found, |out, style| {
+            self.write_not_of_history(out, style)?;
+            view::sensitivity::write(out, &found, parameter, style)
+        })?;
         Ok(())
     }
 }

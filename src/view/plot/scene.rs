@@ -14,7 +14,6 @@ use crate::answer::diagram::Internal;
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, State};
 use crate::answer::rounding::largest;
 use crate::model::pair::Pair;
-use crate::model::parameter::ParameterValues;
 use crate::model::structure::{Bar, Component, Dimension, Structure};
 use crate::model::vector::unit;
 use crate::text::number::short;
@@ -165,8 +164,8 @@ pub fn towards(pair: &Pair, state: State, slip: &[f64], projection: &Projection)
 }
 
 impl Scene {
-    /// The scene of a picture, with the loads under these values of the parameters.
-    pub fn new(picture: &Picture<'_>, loads: Option<&ParameterValues>) -> Scene {
+    /// The scene of a picture, with the loads under these factors of the load cases.
+    pub fn new(picture: &Picture<'_>, loads: Option<&[f64]>) -> Scene {
         let structure = picture.structure;
         let projection = Projection::new(structure.dimension, picture.viewpoint);
         let u = picture.displacements.map(|displacements| nodal(structure, displacements));
@@ -210,9 +209,8 @@ impl Scene {
             is_deformed: before.outline != now.outline,
             supports: supported(structure).into_iter().map(|(node, held)| (at(node), held)).collect(),
             pairs: structure.pairs.iter().enumerate().map(mark).collect(),
-            loads: loads.map_or_else(Loads::default, |parameters| {
-                let factors: Vec<f64> = structure.load_cases.iter().map(|case| case.factor.value(parameters)).collect();
-                CaseLoads::of(structure, moved).seen(&factors, factor, &projection)
+            loads: loads.map_or_else(Loads::default, |factors| {
+                CaseLoads::of(structure, moved).seen(factors, factor, &projection)
             }),
             diagrams: Vec::new(),
             before,

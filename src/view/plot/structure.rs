@@ -12,7 +12,6 @@ use super::scene::{Picture, Scene};
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{MemberForces, State};
 use crate::answer::rounding::largest;
-use crate::model::parameter::ParameterValues;
 use crate::model::units::Units;
 use crate::text::number::heading;
 use crate::view::members::extremes;
@@ -72,14 +71,14 @@ pub fn support_sign(held: usize, ascii: bool) -> char {
     }
 }
 
-/// Draws the picture with a legend of the signs it uses; with parameters and units the loads too.
+/// Draws the picture with a legend of the signs it uses; with the factors of the load cases and units the loads too.
 pub fn write(
     out: &mut dyn Write,
     picture: &Picture<'_>,
-    loads: Option<(&ParameterValues, &Units)>,
+    loads: Option<(&[f64], &Units)>,
     style: &Style,
 ) -> io::Result<()> {
-    let scene = Scene::new(picture, loads.map(|(parameters, _)| parameters));
+    let scene = Scene::new(picture, loads.map(|(factors, _)| factors));
     draw(out, picture, &scene, loads.map(|(_, units)| units), style)
 }
 

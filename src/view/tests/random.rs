@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use unicode_width::UnicodeWidthStr;
 
-use super::sample::{beam, beam_ray, beam_structure, plates, scenario, units};
+use super::sample::{beam, beam_ray, beam_structure, factors_under, plates, scenario, units};
 use crate::answer::diagram::Internal;
 use crate::answer::record::*;
 use crate::fem::Piece;
@@ -207,8 +207,8 @@ proptest! {
                 viewpoint: crate::view::projection::Viewpoint::default(),
             };
             narrow(s, |out| structure::write(out, &picture, None, s));
-            let values = [("F2".to_owned(), u[0][0])].into();
-            narrow(s, |out| structure::write(out, &picture, Some((&values, &units())), s));
+            let factors = factors_under(&structure, u[0][0]);
+            narrow(s, |out| structure::write(out, &picture, Some((&factors, &units())), s));
             let members: Vec<MemberForces> = (0..5).map(|element| MemberForces {
                 bar: "AF".into(), element,
                 start: EndForces { n: u[element][0], q: u[element][1], m: u[element][2], space: None },

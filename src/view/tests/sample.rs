@@ -440,6 +440,12 @@ fn ground_pair(id: &str, node: usize) -> Pair {
     }
 }
 
+/// The factors of the load cases of a structure under a pull F2.
+pub(super) fn factors_under(structure: &Structure, f2: f64) -> Vec<f64> {
+    let values = [("F2".to_owned(), f2)].into();
+    structure.load_cases.iter().map(|case| case.factor.value(&values)).collect()
+}
+
 /// The scenario of the beam, F2 changed from 100 to 130.
 pub fn scenario() -> Scenario {
     let parameter = |value: f64, max: f64, step: f64, unit: Option<&str>, about: &str| Parameter {

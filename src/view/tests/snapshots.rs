@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use unicode_width::UnicodeWidthStr;
 
-use super::sample::{beam, beam_ray, beam_structure, cantilever, plates, scenario, units};
+use super::sample::{beam, beam_ray, beam_structure, cantilever, factors_under, plates, scenario, units};
 use crate::answer::diagram::Internal;
 use crate::answer::record::*;
 use crate::view::plot::{diagram, scene, structure, trace, zone};
@@ -79,8 +79,8 @@ fn pictures(style: &Style) -> String {
             height: 16,
         };
         structure::write(&mut out, &picture, None, style)?;
-        let values = [("F2".to_owned(), 130.0)].into();
-        structure::write(&mut out, &picture, Some((&values, &units)), style)?;
+        let factors = factors_under(&bar, 130.0);
+        structure::write(&mut out, &picture, Some((&factors, &units)), style)?;
         let (held, forces, moved) = cantilever();
         for force in [Internal::Shear, Internal::Moment] {
             let drawn = diagram::Drawing { members: &forces, bar: "AF", force, height: 9 };
@@ -96,7 +96,8 @@ fn pictures(style: &Style) -> String {
             viewpoint: Viewpoint::default(),
             height: 16,
         };
-        structure::write(&mut out, &picture, Some((&values, &units)), style)?;
+        let factors = factors_under(&held, 130.0);
+        structure::write(&mut out, &picture, Some((&factors, &units)), style)?;
         let one = &last.pairs[5..];
         zone::write(&mut out, zone::Quantity::Pressure, &[("", one)], &units, 6, style)?;
         zone::write(&mut out, zone::Quantity::Gap, &states[1..], &units, 6, style)?;

@@ -1,7 +1,6 @@
 //! Pictures of structures in space.
 
-use super::sample::{block, block_states, tower, units};
-use crate::model::parameter::ParameterValues;
+use super::sample::{block, block_states, factors_under, tower, units};
 use crate::model::structure::Structure;
 use crate::view::plot::scene::{Magnification, Picture, Scene};
 use crate::view::plot::{face_map, structure, zone};
@@ -27,10 +26,10 @@ fn drawn(structure: &Structure, view: &str, style: &Style) -> String {
     let states = block_states(structure);
     let picture = Picture { pairs: Some(&states), ..picture(structure, view) };
     let mut out = Vec::new();
-    let (values, units) = (ParameterValues::default(), units());
-    structure::write(&mut out, &picture, Some((&values, &units)), style).unwrap();
+    let (factors, units) = (factors_under(structure, 0.0), units());
+    structure::write(&mut out, &picture, Some((&factors, &units)), style).unwrap();
     if let Ok(folder) = std::env::var("LOOK") {
-        let scene = Scene::new(&picture, Some(&values));
+        let scene = Scene::new(&picture, Some(&factors));
         let figure =
             svg::structure::figure(&scene, &units, &svg::Caption { title: scene.title.clone(), about: String::new() });
         std::fs::write(format!("{folder}/{}-{view}.svg", structure.nodes.len()), figure).unwrap();

@@ -15,12 +15,10 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
         return on_bar(builder, &fields);
     }
     let spot = fields.required("at").and_then(|at| builder.spot(at));
-    let force = fields.required("force").and_then(Cursor::vector);
-    let moment = match fields.optional("moment") {
-        Some(cursor) => Some((cursor, cursor.moment()?)),
-        None => None,
-    };
-    match spot? {
+    let acting = acting(&fields);
+    let spot = spot?;
+    let (force, moment) = acting?;
+    match spot {
         Spot::Node(node) => {
             let moment = match moment {
                 Some((cursor, moment)) => {
@@ -28,7 +26,6 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
                 }
                 None => [0.0; 3],
             };
-            let force = force?;
             builder.demand_displacement(cursor, node, force, "no force can act there").then_some(())?;
             Some(vec![Load::Nodal { node, force, moment }])
         }
@@ -36,20 +33,37 @@ pub fn read<'d>(builder: &Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Load>> 
             refuse_moment(moment, "an edge")?;
             let nodes = &builder.structure.nodes;
             let total = edge.length(nodes);
-            let per_length = force?.map(|force| force / total);
+            let per_length = force.map(|force| force / total);
             Some(nodal(edge.consistent_forces(nodes, None, &|_| per_length)))
         }
         Spot::Face(face) => {
             refuse_moment(moment, "a face")?;
             let nodes = &builder.structure.nodes;
             let area = face.area(nodes);
-            let per_area = force?.map(|force| force / area);
+            let per_area = force.map(|force| force / area);
             Some(nodal(face.consistent_forces(nodes, None, &|_| per_area)))
         }
     }
 }
 
-fn refuse_moment(moment: Option<(Cursor<'_>, [f64; 3])>, what: &str) -> Option<()> {
+/// A moment and where it is written.
+type Moment<'d> = (Cursor<'d>, [f64; 3]);
+
+/// What acts: a force, a moment or both.
+fn acting<'d>(fields: &Fields<'d>) -> Option<([f64; 3], Option<Moment<'d>>)> {
+    let force = match (fields.optional("force"), fields.entry("moment")) {
+        (Some(cursor), _) => cursor.vector(),
+        (None, Some(_)) => Some([0.0; 3]),
+        (None, None) => fields.required("force").and_then(Cursor::vector),
+    };
+    let moment = match fields.optional("moment") {
+        Some(cursor) => Some((cursor, cursor.moment()?)),
+        None => None,
+    };
+    Some((force?, moment))
+}
+
+fn refuse_moment(moment: Option<Moment<'_>>, what: &str) -> Option<()> {
     let Some((cursor, _)) = moment else { return Some(()) };
     cursor.problem(
         format!("a `moment` cannot act on {what}: its nodes have no rotation"),
@@ -66,18 +80,7 @@ fn on_bar<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<Vec<Load>> {
     );
     let bar = fields.required("bar").and_then(|at| bar(builder, at));
     let distance = fields.required("distance").and_then(|at| Some((at, at.of(Region::Load).number()?)));
-    let force = match fields.optional("force") {
-        Some(cursor) => Some(cursor.vector()?),
-        None => None,
-    };
-    let moment = match fields.optional("moment") {
-        Some(cursor) => Some((cursor, cursor.moment()?)),
-        None => None,
-    };
-    if force.is_none() && moment.is_none() {
-        fields.required("force");
-        return None;
-    }
+    let (force, moment) = acting(fields)?;
     let (at, distance) = distance?;
     let (element, distance) = builder.place_on_bar(at, bar?, distance)?;
     if let Some((cursor, _)) = moment
@@ -95,7 +98,7 @@ fn on_bar<'d>(builder: &Builder<'d>, fields: &Fields<'d>) -> Option<Vec<Load>> {
         );
         return None;
     }
-    let (force, moment) = (force.unwrap_or_default(), moment.map_or([0.0; 3], |(_, moment)| moment));
+    let moment = moment.map_or([0.0; 3], |(_, moment)| moment);
     Some(vec![Load::Element { element, load: ElementLoad::Point { distance, force, moment } }])
 }
 

@@ -83,7 +83,7 @@ impl Session {
     }
 
     fn shape_figure(&self, shape: &Shape<'_>) -> Result<String, CommandError> {
-        let scene = Scene::new(&shape.picture(0), Some(&self.now.values));
+        let scene = Scene::new(&shape.picture(0), Some(self.quantity_factors()));
         Ok(svg::structure::figure(&scene, &self.now.scenario.units, &self.caption(&scene.title)))
     }
 

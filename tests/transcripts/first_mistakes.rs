@@ -1,0 +1,102 @@
+//! What somebody meets who does not know the program yet: a wrong word to the shell, a body that only contact holds, and what
+//! is said beside a load history.
+
+use std::process::Command;
+
+use super::lines::{read, text, told};
+
+/// A sliding bearing of one node, loaded downwards by W and sideways by P, which springs of stiffness 2 resist. The file
+/// has a history at whose end P is 0.
+const BEARING: &str = r#"{"format": "stickslip/1", "title": "bearing", "units": {"length": "m", "force": "kN"},
+ "parameters": {"f": 0.1, "P": 30}, "nodes": {"n": [0, 0]},
+ "springs": [{"at": "n", "direction": [1, 0], "stiffness": 2}],
+ "contacts": [{"id": "pad", "node": "n", "against": "ground", "normal": [0, 1], "friction": "f"}],
+ "loads": {"weight": {"items": [{"point": {"at": "n", "force": [0, -100]}}]},
+           "push": {"factor": "P", "items": [{"point": {"at": "n", "force": [1, 0]}}]}},
+ "stages": [{"weight": 1}, {"weight": 1, "push": 1}, {"weight": 1}]}"#;
+
+fn refused(words: &[&str]) -> String {
+    let ended = Command::new(env!("CARGO_BIN_EXE_stickslip")).args(words).output().unwrap();
+    assert_eq!(ended.status.code(), Some(2), "{words:?}");
+    String::from_utf8(ended.stderr).unwrap()
+}
+
+#[test]
+fn a_wrong_word_to_the_shell_is_told_as_one() {
+    let unknown = "error: unknown command `solv` (did you mean `solve`?); `stickslip --help` lists them\n";
+    assert_eq!(refused(&["solv", "beam"]), unknown);
+    let second = "error: `frame` after the scenario `beam`: one scenario is opened at a time\n";
+    assert_eq!(refused(&["beam", "frame"]), second);
+    assert!(refused(&["why", "beam"]).contains("`why` is a command of the prompt"));
+}
+
+#[test]
+fn bodies_and_nodes_that_only_contact_holds_have_names() {
+    let block = r#"{"format": "stickslip/1", "title": "block", "nodes": {"a": [0, 0], "b": [1, 0]},
+     "rigid": [{"id": "block", "nodes": ["a", "b"]}],
+     "contacts": [{"id": "c1", "node": "a", "against": "ground", "normal": [0, 1], "friction": 0.4},
+                  {"id": "c2", "node": "b", "against": "ground", "normal": [0, 1], "friction": 0.4}],
+     "loads": {"w": {"items": [{"point": {"at": "a", "force": [0, -1]}}]}}}"#;
+    let said = text(&mut read(block), "status");
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("loose: `block` can slide along x, lift off along y and turn about (0.5, 0)"), "{said}");
+    let said = text(&mut read(BEARING), "status");
+    assert!(said.contains("loose: node `n` can lift off along y; only contact holds it"), "{said}");
+}
+
+#[test]
+fn after_a_history_what_is_not_of_it_says_so_and_pictures_have_its_loads() {
+    let mut session = read(BEARING);
+    // √(100² + 30²)
+    assert!(text(&mut session, "plot structure").contains("weight + push up to 104.4 kN"));
+    told(&mut session, "stages").unwrap();
+    for line in ["why pad", "sensitivity"] {
+        let said = text(&mut session, line);
+        assert!(said.starts_with("of the answer with every load case acting at once; "), "{line}: {said}");
+    }
+    // The push has left.
+    let said = text(&mut session, "plot structure");
+    assert!(said.contains("load up to 100 kN") && !said.contains("weight + push"), "{said}");
+}
+
+#[test]
+fn rounding_is_no_margin_and_service_events_are_named() {
+    // A bar on a roller: heat lengthens it and presses nothing, whatever its temperature.
+    let bar = r#"{"format": "stickslip/1", "title": "bar", "parameters": {"f": 0.05},
+     "materials": {"s": {"E": 2.1e8, "nu": 0.3, "expansion": 1.2e-5}}, "sections": {"s": {"area": 0.0156, "inertia": 9.208e-4}},
+     "nodes": {"A": [0, 0], "B": [0, 6], "C": [20, 6], "D": [20, 0]},
+     "bars": [{"id": "bar", "polyline": ["A", "B", "C", "D"], "material": "s", "section": "s"}],
+     "supports": [{"at": "A", "fixed": ["x", "y"]}],
+     "contacts": [{"id": "pad", "node": "D", "against": "ground", "normal": [0, 1], "friction": "f"}],
+     "loads": {"dead": {"items": [{"line": {"bar": "bar", "value": [0, -10], "range": [6, 26]}}]},
+               "heat": {"factor": 30, "items": [{"temperature": {"change": 1, "on": ["bar"]}}]}}}"#;
+    let said = text(&mut read(bar), "why pad");
+    let (_, heat) = said.split_once("`heat` = 30").unwrap();
+    assert!(heat.trim_start().starts_with("up, first       nothing turns"), "{said}");
+    // The pad slips when the push exceeds f W = 10; then the spring alone takes all of it.
+    let said = text(&mut read(BEARING), "set P 0; limit push");
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("the only change lies at push = 10, where pair pad slips +"), "{said}");
+    let friction = told(&mut read(BEARING), "limit f").unwrap_err();
+    assert!(
+        friction.starts_with("f is no load: it is the friction of pair pad; `trace f to V` follows it"),
+        "{friction}"
+    );
+}
+
+#[test]
+fn a_moment_acts_alone() {
+    let beam = |load: &str| {
+        let text = format!(
+            r#"{{"format": "stickslip/1", "title": "beam", "materials": {{"s": {{"E": 1, "nu": 0}}}},
+             "sections": {{"s": {{"area": 1, "inertia": 1}}}}, "nodes": {{"A": [0, 0], "B": [1, 0]}},
+             "bars": [{{"id": "AB", "nodes": ["A", "B"], "material": "s", "section": "s"}}],
+             "supports": [{{"at": "A", "fixed": ["x", "y", "r"]}}], "loads": {{"m": {{"items": [{{"point": {load}}}]}}}}}}"#
+        );
+        super::lines::text(&mut read(&text), "show uy B")
+    };
+    // M l² / 2 E I
+    let expected = beam(r#"{"at": "B", "force": [0, 0], "moment": 3}"#);
+    assert!(expected.contains("1.5"), "{expected}");
+    assert_eq!(beam(r#"{"at": "B", "moment": 3}"#), expected);
+}
