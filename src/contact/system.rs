@@ -134,6 +134,19 @@ impl ContactSystem {
         self.stiffness.nrows()
     }
 
+    /// A vector over the joints from a number along the normal and those along the tangents of every pair.
+    pub fn over_joints<T: IntoIterator<Item = f64>>(
+        &self,
+        of_pairs: impl IntoIterator<Item = (f64, T)>,
+    ) -> DVector<f64> {
+        let mut joints = DVector::zeros(self.joint_count());
+        for (i, (pair, (normal, tangential))) in self.pairs.iter().zip(of_pairs).enumerate() {
+            joints[i] = normal;
+            pair.tangential.clone().zip(tangential).for_each(|(joint, value)| joints[joint] = value);
+        }
+        joints
+    }
+
     /// Whether pairs slip in a plane of directions: then their friction polygon has more than two facets.
     pub fn is_in_space(&self) -> bool {
         self.tangents == 2

@@ -23,8 +23,8 @@ pub struct NullSpace {
     pub sensitivity: f64,
 }
 
-/// The null space. Singular values below the share `null` of the largest count as zero, and in an elimination what is below that share of the terms it
-/// sums. `None` if the decomposition does not converge.
+/// The null space. Singular values below the share `null` of the largest count as zero, and in an elimination what is
+/// below that share of the terms it sums. `None` if the decomposition does not converge.
 pub fn null_space(rows: &[Terms], columns: usize, null: f64) -> Option<NullSpace> {
     if rows.is_empty() {
         return Some(NullSpace { basis: DMatrix::identity(columns, columns), sensitivity: 0.0 });

@@ -155,14 +155,9 @@ fn undetermined(system: &ContactSystem) -> PathError {
 }
 
 /// The problem with joints that repeat one another as they are, where its motion determines what they carry.
-fn with_repeated_joints(problem: &ContactProblem, solved: &Solved) -> Result<ContactProblem, PathError> {
+fn determined(problem: &ContactProblem, solved: &Solved) -> Result<ContactProblem, PathError> {
     let Some(yielding) = &problem.system.yielding else { return Ok(problem.clone()) };
-    let mut z = DVector::zeros(problem.system.joint_count());
-    for (i, (pair, shown)) in problem.system.pairs.iter().zip(&solved.answer.pairs).enumerate() {
-        z[i] = shown.z_n;
-        let slip = shown.space.map_or([0.0; 2], |space| space.z_t);
-        pair.tangential.clone().zip(slip).for_each(|(joint, slip)| z[joint] = slip);
-    }
+    let z = problem.system.over_joints(solved.answer.pairs.iter().map(|shown| (shown.z_n, shown.slip())));
     match yielding.exactly(problem) {
         Some(exact) if yielding.undetermined(problem, &z, false).is_empty() => Ok(exact),
         _ => Err(undetermined(&problem.system)),
@@ -176,7 +171,7 @@ impl<'a> End<'a> {
         if system.is_in_space() {
             return match &solved.answer.polygon {
                 Some(polygon) if solved.answer.is_answer() && polygon.cone => {
-                    Ok(End::Cone { problem: with_repeated_joints(problem, solved)?, solved })
+                    Ok(End::Cone { problem: determined(problem, solved)?, solved })
                 }
                 Some(_) if solved.answer.is_answer() => Err(PathError::Missing(
                     "`sensitivity` follows an answer on Coulomb's cone, and this one is on the polygon: `set cone on`, or \

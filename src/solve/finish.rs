@@ -146,12 +146,7 @@ impl Prepared {
                 };
                 let load = file.load(&problem.factors);
                 let slips = if system.repeats_joints() {
-                    let mut forces = DVector::zeros(system.joint_count());
-                    for (i, (pair, shown)) in system.pairs.iter().zip(&*pairs).enumerate() {
-                        forces[i] = shown.x_n;
-                        let along = shown.space.map_or([shown.x_t, 0.0], |space| space.x_t);
-                        pair.tangential.clone().zip(along).for_each(|(joint, force)| forces[joint] = force);
-                    }
+                    let forces = system.over_joints(pairs.iter().map(|shown| (shown.x_n, shown.friction())));
                     file.slips_under(&forces, &load)
                 } else {
                     let moved = problem.dislocation(z);

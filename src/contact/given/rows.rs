@@ -28,6 +28,11 @@ impl Rows {
         }
     }
 
+    /// A vector of the file over the rows that are kept.
+    pub fn over_kept(&self, vector: &[f64]) -> DVector<f64> {
+        DVector::from_iterator(self.kept.len(), self.kept.iter().map(|&row| vector[row]))
+    }
+
     pub fn block(matrix: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(rows.len(), columns.len(), |a, b| matrix[(rows[a], columns[b])])
     }

@@ -11,7 +11,7 @@ use crate::contact::pivoted::{PivotedCholesky, scales};
 use crate::contact::system::{ContactSystem, ForceForm, JointLoad};
 use crate::contact::yielding::yielding;
 use crate::lcp::problem::NOISE;
-use crate::model::scenario::{GivenContactSystem, GivenLoad};
+use crate::model::scenario::GivenContactSystem;
 
 /// The system of a singular W: all joints in force form except the normals of bound pairs, which are exchanged for
 /// their displacements one by one.
@@ -23,8 +23,8 @@ pub(super) fn singular_compliance(
     factor: PivotedCholesky,
 ) -> Result<ContactSystem, GivenError> {
     let k = rows.kept.len();
-    let of_load = |load: &GivenLoad| DVector::from_iterator(k, rows.kept.iter().map(|&row| load.vector[row]));
-    let mut mixed = Mixed { matrix: own.clone(), loads: given.loads.iter().map(of_load).collect() };
+    let loads = given.loads.iter().map(|load| rows.over_kept(&load.vector));
+    let mut mixed = Mixed { matrix: own.clone(), loads: loads.collect() };
     let mut forced = vec![true; k];
     for (pair, _) in given.laws.iter().enumerate().filter(|(_, law)| law.is_bilateral()) {
         if mixed.matrix[(pair, pair)] <= NOISE * own[(pair, pair)].abs() {
@@ -69,10 +69,13 @@ pub(super) fn repeated_in_space(
         return Err(GivenError::Held { pair: given.pairs[bilateral[held.order[held.rank]]].clone() });
     }
     let (k, null) = (rows.kept.len(), factor.null_space(own));
-    if let Some(near) = null.near.first() {
+    let nearly_singular = |forces: &DVector<f64>| {
         let mut all = DVector::zeros(matrix.nrows());
-        rows.kept.iter().zip(near.iter()).for_each(|(&row, force)| all[row] = *force);
-        return Err(GivenError::NearlySingular { motion: joints_in_words(given, &all, &scales(&matrix)) });
+        rows.kept.iter().zip(forces.iter()).for_each(|(&row, force)| all[row] = *force);
+        GivenError::NearlySingular { motion: joints_in_words(given, &all, &scales(&matrix)) }
+    };
+    if let Some(near) = null.near.first() {
+        return Err(nearly_singular(near));
     }
     let self_stress = without_noise(null.exact, &factor.scale, k);
     let mut independent = factor.independent().to_vec();
@@ -81,7 +84,7 @@ pub(super) fn repeated_in_space(
     let repeated: Vec<usize> = (0..k).filter(repeating).collect();
     let across = Rows::block(&self_stress, &repeated, &(0..repeated.len()).collect::<Vec<_>>());
     // Null vectors with a leading entry of their own: as good as diagonal.
-    let back = across.transpose().try_inverse().unwrap_or_else(|| DMatrix::zeros(repeated.len(), repeated.len()));
+    let back = across.transpose().try_inverse().ok_or_else(|| nearly_singular(&self_stress.column(0).into_owned()))?;
     let follows = |one: usize, of: &dyn Fn(usize) -> f64| -> f64 {
         cleaned(0.0, &DVector::from_fn(repeated.len(), |column, _| -back[(one, column)] * of(column))).0
     };
@@ -91,8 +94,7 @@ pub(super) fn repeated_in_space(
             independent.iter().map(term).filter(|(_, factor)| *factor != 0.0).collect()
         })
         .collect();
-    let of_load = |load: &GivenLoad| DVector::from_iterator(k, rows.kept.iter().map(|&row| load.vector[row]));
-    let moved: Vec<DVector<f64>> = given.loads.iter().map(of_load).collect();
+    let moved: Vec<DVector<f64>> = given.loads.iter().map(|load| rows.over_kept(&load.vector)).collect();
     let offsets = moved.iter().map(|moved| {
         let sum = |column: usize| -cleaned(0.0, &self_stress.column(column).component_mul(moved)).0;
         (0..repeated.len()).map(|one| follows(one, &sum)).collect()

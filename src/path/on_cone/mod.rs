@@ -450,10 +450,5 @@ fn settle(before: &mut PairState, after: &PairState) {
 
 /// z over the joints as pairs show it.
 fn displacements(problem: &ContactProblem, pairs: &[PairState]) -> DVector<f64> {
-    let mut z = DVector::zeros(problem.system.joint_count());
-    for (i, (pair, shown)) in problem.system.pairs.iter().zip(pairs).enumerate() {
-        z[i] = shown.z_n;
-        pair.tangential.clone().zip(shown.slip()).for_each(|(joint, slip)| z[joint] = slip);
-    }
-    z
+    problem.system.over_joints(pairs.iter().map(|shown| (shown.z_n, shown.slip())))
 }

@@ -147,13 +147,7 @@ impl<'a> Facts<'a> {
     /// A normal number and those along the tangents of every pair over the joints.
     fn joints(&self, read: impl Fn(&PairState) -> (f64, Vec<f64>)) -> DVector<f64> {
         let Some(system) = self.prepared.and_then(Prepared::system) else { return DVector::zeros(0) };
-        let mut joints = DVector::zeros(system.joint_count());
-        for (i, (pair, state)) in system.pairs.iter().zip(self.pairs).enumerate() {
-            let (normal, tangential) = read(state);
-            joints[i] = normal;
-            pair.tangential.clone().zip(tangential).for_each(|(joint, value)| joints[joint] = value);
-        }
-        joints
+        system.over_joints(self.pairs.iter().map(read))
     }
 
     pub(super) fn pair(&self, id: &str) -> Result<&'a PairState, NoValue> {

@@ -88,11 +88,8 @@ pub(super) trait Follower<'a> {
     fn begin(&mut self, begin: &Begin, targets: &[Vec<f64>]) -> Result<(), PathError> {
         let (Begin::Slips(slips), Some(factors)) = (begin, targets.first()) else { return self.put_together() };
         let system = &*self.place().laws.problem.system;
-        let mut over_joints = DVector::zeros(system.joint_count());
-        for (pair, slip) in system.pairs.iter().zip(slips) {
-            pair.tangential.clone().zip(slip).for_each(|(joint, slip)| over_joints[joint] = *slip);
-        }
-        match self.stand_behind(factors, over_joints)? {
+        let slips = system.over_joints(slips.iter().map(|slip| (0.0, *slip)));
+        match self.stand_behind(factors, slips)? {
             None => Ok(()),
             Some(how) => Err(PathError::Missing(format!(
                 "the structure cannot stand under the first loads with these slips behind it: the run ended {how}"

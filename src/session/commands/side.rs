@@ -3,8 +3,6 @@
 
 use std::sync::Arc;
 
-use nalgebra::DVector;
-
 use crate::answer::record::{NodeDisplacement, PairState};
 use crate::answer::same::same_pairs;
 use crate::model::parameter::ParameterValues;
@@ -57,11 +55,7 @@ fn mode_of(prepared: &Prepared, solved: &Solved) -> Option<Vec<NodeDisplacement>
     let Geometry::Structure { system, main, structure } = &*prepared.geometry else {
         return None;
     };
-    let mut z = DVector::zeros(system.joint_count());
-    for (i, (pair, direction)) in system.pairs.iter().zip(ray.direction.pairs()).enumerate() {
-        z[i] = direction.z_n;
-        pair.tangential.clone().zip(direction.slip()).for_each(|(joint, slip)| z[joint] = slip);
-    }
+    let z = system.over_joints(ray.direction.pairs().iter().map(|direction| (direction.z_n, direction.slip())));
     if z.amax() == 0.0 {
         return None;
     }
