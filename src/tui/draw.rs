@@ -175,6 +175,7 @@ fn draw_pane(state: &State, places: &Places, pane: Pane, area: Rect, shares: boo
         let plain = matches!(state.shown.scenario.source, crate::model::scenario::Source::Lcp(_));
         match pane {
             Pane::Pivots if state.shown.stage.is_some() => "what happens on the way".to_owned(),
+            Pane::Pairs if !panes::pairs::is_whole(state, inside(area)) => "`:pairs` shows all columns".to_owned(),
             _ => pane.explanation(plain).to_owned(),
         }
     } else {

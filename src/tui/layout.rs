@@ -3,6 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::app::State;
+use super::paint::inside;
 use super::pane::Pane;
 use super::shown::Shown;
 use super::{panes, tour};
@@ -146,9 +147,12 @@ fn wide(state: &State, body: Rect, places: &mut Places) {
     let sides = offered(state, &SIDE, state.side);
     let needed = if sides.len() > 1 { 11 } else { 9 };
     let (rest, side) = cut_rows(rest, rest.height - needed.min(rest.height / 4));
-    // the pivots take what they need, at most half; the pairs have more to show
+    // the pivots take what they need, at most half, then the pairs; what is left goes to the side
     let needed = u16::try_from(pivot_rows).unwrap_or(u16::MAX).saturating_add(3);
     let (pivots, pairs) = cut_rows(rest, needed.clamp(6, rest.height / 2));
+    let needed = u16::try_from(panes::pairs::height(state, inside(pairs))).unwrap_or(u16::MAX).saturating_add(2);
+    let (pairs, spare) = cut_rows(pairs, needed.max(6));
+    let side = Rect { y: side.y - spare.height, height: side.height + spare.height, ..side };
     places.panes = vec![
         (Pane::Structure, structure),
         (state.lower, plot),

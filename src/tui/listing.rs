@@ -25,8 +25,9 @@ pub fn around(selected: usize, count: usize, height: usize) -> std::ops::Range<u
 }
 
 /// The list, or the part of it around the rows in view.
-#[derive(Default)]
 pub struct Listing {
+    /// Whether its lines say all there is to say of a row; a table may have more columns than find room.
+    pub is_whole: bool,
     /// Stays at the top.
     heading: Vec<Line<'static>>,
     /// The rows, from this one on.
@@ -39,12 +40,22 @@ pub struct Listing {
 impl Listing {
     /// All of a list.
     pub fn new(heading: Vec<Line<'static>>, rows: Vec<Line<'static>>) -> Listing {
-        Listing { heading, first: 0, count: rows.len(), rows }
+        Listing { is_whole: true, heading, first: 0, count: rows.len(), rows }
     }
 
     /// The rows of a list of `count` from `first` on, among them those around the selected one: see [`around`].
     pub fn part(heading: Vec<Line<'static>>, rows: Vec<Line<'static>>, (first, count): (usize, usize)) -> Listing {
-        Listing { heading, rows, first, count }
+        Listing { is_whole: true, heading, rows, first, count }
+    }
+
+    /// With the word whether its lines say all there is to say of a row.
+    pub fn whole(self, is_whole: bool) -> Listing {
+        Listing { is_whole, ..self }
+    }
+
+    /// Lines of the heading and of all rows.
+    pub fn height(&self) -> usize {
+        self.heading.len() + self.count
     }
 
     /// First row in view and how many there are.

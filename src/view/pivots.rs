@@ -57,13 +57,12 @@ pub fn write(
     if ties {
         table.columns.push(Column::words("ties").droppable(1));
     }
-    let names_directions = chosen.iter().any(|pivot| pivot.sentence.contains('°'));
     let longest = chosen.iter().map(|pivot| pivot.sentence.width()).max().unwrap_or(0);
     let on_the_row = longest > 0 && longest + 50 <= style.width;
     if on_the_row {
         table.columns.push(Column::words("what happens"));
     }
-    for pivot in chosen {
+    for pivot in &chosen {
         let mut row = Row::new(vec![
             Cell::from(pivot.step.to_string()),
             Cell::from(pivot.entering.as_str()),
@@ -92,10 +91,21 @@ pub fn write(
         );
         writeln!(out, "{}", style.paint(Role::Muted, &style.fit(&text, style.width)))?;
     }
+    whose_directions(out, answer, &chosen, style)
+}
+
+/// In space: whose directions the sentences of these pivots name, beside those of the answer.
+pub fn whose_directions(
+    out: &mut dyn Write,
+    answer: &Answer,
+    pivots: &[&PivotRecord],
+    style: &Style,
+) -> io::Result<()> {
+    let names_directions = pivots.iter().any(|pivot| pivot.sentence.contains('°'));
     if let Some(polygon) = answer.polygon.as_ref().filter(|polygon| polygon.cone && names_directions) {
         let text = format!(
-            "directions in these lines are those of the {} facets of the polygon, on which the pivots are made; the answer is \
-             taken on from the last of them to the cone, where the directions that `pairs` shows are the pairs' own",
+            "directions in the pivots' lines are those of the {} facets of the polygon, on which the pivots are made; the answer \
+             is taken on from the last of them to the cone, where the directions that `pairs` shows are the pairs' own",
             polygon.facets
         );
         style.paragraph(out, Role::Muted, &text)?;

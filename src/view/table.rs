@@ -101,7 +101,8 @@ impl Column {
         self
     }
 
-    /// Goes on beneath first where the table is too wide; the highest rank goes before the others, 0 last.
+    /// Goes on beneath first where the table is too wide; the highest rank goes before the others, 0 last, and columns of one
+    /// rank go together.
     pub fn droppable(mut self, rank: u8) -> Column {
         self.rank = rank;
         self
@@ -195,27 +196,42 @@ impl Table {
 
     /// Writes the table: heads, units (if any), rows; columns that find no room beneath, after the first one again.
     pub fn write(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
-        let gutter = if self.rows.iter().any(|row| row.marked) { 2 } else { 0 };
-        let room = style.width.saturating_sub(gutter);
-        let mut columns = self.printed(DIGITS, style);
-        let blocks = match fitted(&columns, &all(&columns), room) {
-            Some(block) => vec![block],
-            None => {
-                let fewer = self.printed(DIGITS - 1, style);
-                let block = fitted(&fewer, &all(&fewer), room);
-                if block.is_some() {
-                    columns = fewer;
-                }
-                block.map_or_else(|| self.folded(&columns, room), |block| vec![block])
-            }
-        };
+        let (columns, blocks) = self.blocks(style);
         for (index, block) in blocks.iter().enumerate() {
             if index > 0 {
                 writeln!(out)?;
             }
-            self.write_block(out, &columns, block, (gutter, index == 0), style)?;
+            self.write_block(out, &columns, block, (self.gutter(), index == 0), style)?;
         }
         Ok(())
+    }
+
+    /// Writes the columns that stand beside each other, a row on a line; says whether these are all.
+    pub fn write_beside(&self, out: &mut dyn Write, style: &Style) -> io::Result<bool> {
+        let (columns, blocks) = self.blocks(style);
+        if let Some(block) = blocks.first() {
+            self.write_block(out, &columns, block, (self.gutter(), true), style)?;
+        }
+        Ok(blocks.len() <= 1)
+    }
+
+    /// Columns ahead of the rows for the mark of one of them.
+    fn gutter(&self) -> usize {
+        if self.rows.iter().any(|row| row.marked) { 2 } else { 0 }
+    }
+
+    /// The columns with as many digits as there is room for, and which of them stand beside each other.
+    fn blocks(&self, style: &Style) -> (Vec<Printed>, Vec<Block>) {
+        let room = style.width.saturating_sub(self.gutter());
+        for digits in [DIGITS, DIGITS - 1] {
+            let columns = self.printed(digits, style);
+            if let Some(block) = fitted(&columns, &all(&columns), room) {
+                return (columns, vec![block]);
+            }
+        }
+        let columns = self.printed(DIGITS, style);
+        let blocks = self.folded(&columns, room);
+        (columns, blocks)
     }
 
     /// The columns with at most this many digits in their numbers.
@@ -263,22 +279,36 @@ impl Table {
         Printed { head, unit, cells, width, least }
     }
 
-    /// Blocks of columns where they do not all stand beside each other: those of the lowest rank come first, the first
-    /// column is repeated.
+    /// Blocks of columns where they do not all stand beside each other: those of the lowest rank come first, columns of one
+    /// rank stay together where they can, the first column is repeated.
     fn folded(&self, columns: &[Printed], room: usize) -> Vec<Block> {
+        let rank = |index: &usize| self.columns[*index].rank;
         let mut left: Vec<usize> = (1..columns.len()).collect();
-        left.sort_by_key(|&index| self.columns[index].rank);
+        left.sort_by_key(rank);
         let mut blocks = Vec::new();
-        while let Some(&next) = left.first() {
-            let mut chosen = vec![0, next];
-            for &index in &left[1..] {
-                let mut wider = chosen.clone();
-                wider.push(index);
+        while !left.is_empty() {
+            let mut chosen = vec![0];
+            let with = |chosen: &[usize], more: &[usize]| {
+                let mut wider = [chosen, more].concat();
                 wider.sort_unstable();
-                if fitted(columns, &wider, room).is_none() {
+                wider
+            };
+            'ranks: for alike in left.chunk_by(|a, b| rank(a) == rank(b)) {
+                let wider = with(&chosen, alike);
+                if fitted(columns, &wider, room).is_some() {
+                    chosen = wider;
+                    continue;
+                }
+                if chosen.len() > 1 {
                     break;
                 }
-                chosen = wider;
+                for index in alike {
+                    let wider = with(&chosen, &[*index]);
+                    if chosen.len() > 1 && fitted(columns, &wider, room).is_none() {
+                        break 'ranks;
+                    }
+                    chosen = wider;
+                }
             }
             left.retain(|index| !chosen.contains(index));
             blocks.push(fitted(columns, &chosen, room).unwrap_or_else(|| squeezed(columns, &chosen, room)));

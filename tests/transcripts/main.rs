@@ -415,7 +415,7 @@ fn the_lcp_goes_to_a_scenario_and_to_matrix_market() {
 /// the cone off they are the same, and in the plane there are none.
 #[test]
 fn pivots_in_space_say_whose_directions_they_tell() {
-    let words = "directions in these lines are those of the 8 facets of the polygon";
+    let words = "directions in the pivots' lines are those of the 8 facets of the polygon";
     let in_one_line = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut space = session("bearing-two-way");
     let pivots = in_one_line(shown(&mut space, "pivots"));
@@ -423,5 +423,5 @@ fn pivots_in_space_say_whose_directions_they_tell() {
     let off = in_one_line(shown(&mut space, "set cone off; pivots"));
     assert!(off.contains('°') && !off.contains(words), "{off}");
     let plane = in_one_line(shown(&mut session("beam"), "pivots"));
-    assert!(!plane.contains("directions in these lines"), "{plane}");
+    assert!(!plane.contains("directions in the pivots' lines"), "{plane}");
 }

@@ -115,6 +115,7 @@ impl Session {
                     writeln!(out, "{line}")?;
                 }
             }
+            view::pivots::whose_directions(out, answer, &turned, style)?;
             if !margins.is_empty() {
                 writeln!(out, "How far the working scheme holds:")?;
             }

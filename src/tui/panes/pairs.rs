@@ -46,16 +46,27 @@ fn listing(state: &State, area: Rect) -> Rc<Listing> {
         let all = state.shown.pairs();
         let pairs: Vec<&PairState> = order.pairs[shown.clone()].iter().map(|index| &all[*index]).collect();
         let units = &state.shown.scenario.units;
-        let mut lines = report(state.look, sheet.width, |out, style| part(&pairs, all, units).write(out, style));
-        // the remark on columns that found no room; no pair begins with a bracket
-        let remark =
-            |line: &Line<'_>| line.spans.first().is_some_and(|span| span.content.trim_start().starts_with('('));
-        if lines.last().is_some_and(remark) {
-            lines.pop();
-        }
-        let rows = lines.split_off(lines.len().saturating_sub(pairs.len()));
-        Listing::part(lines, rows, (shown.start, order.pairs.len()))
+        let mut is_whole = true;
+        let mut heading = report(state.look, sheet.width, |out, style| {
+            is_whole = part(&pairs, all, units).write_beside(out, style)?;
+            Ok(())
+        });
+        let rows = heading.split_off(heading.len().saturating_sub(pairs.len()));
+        Listing::part(heading, rows, (shown.start, order.pairs.len())).whole(is_whole)
     })
+}
+
+/// Lines that the pane fills of those in the area.
+pub fn height(state: &State, area: Rect) -> usize {
+    match &state.shown.moment.solution {
+        Some(solution) => solution.z.len() + 1,
+        None => listing(state, area).height(),
+    }
+}
+
+/// Whether every column of the table finds room.
+pub fn is_whole(state: &State, area: Rect) -> bool {
+    state.shown.moment.solution.is_some() || listing(state, area).is_whole
 }
 
 /// The pair in a row of the screen.

@@ -114,3 +114,18 @@ fn quantities_follow_the_sliders() {
     assert!(rig.screen().contains("sum x_n *"), "{}", rig.screen());
     near(value(&rig, 0), 600.0);
 }
+
+/// Twenty pairs in space have more columns and rows than the pane has room for: the selected one stays in view, the pane says
+/// that there is more, and the command shows it.
+#[test]
+fn the_selected_pair_stays_in_view_where_columns_find_no_room() {
+    let mut rig = Rig::new("block-3d", 80, 24);
+    rig.press(&["3"]);
+    for id in 0..20 {
+        let screen = rig.screen();
+        assert!(screen.contains(&format!("▸ base[{id}] ")), "{screen}");
+        assert!(screen.contains("`:pairs` shows all columns"), "{screen}");
+        assert!(screen.contains("z_t1") && !screen.contains("x_t1"), "{screen}");
+        rig.press(&["down"]);
+    }
+}
