@@ -116,10 +116,10 @@ impl Session {
         self.place_shown().map_or(Ok(()), |place| style.paragraph(out, Role::Muted, &place))
     }
 
-    /// Writes, after a load history was followed, that what comes is of the answer under all loads at once.
-    pub(super) fn write_not_of_history(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+    /// Writes, after a load history was followed, that `what` is of the answer under all loads at once.
+    pub(super) fn write_not_of_history(&self, what: &str, out: &mut dyn Write, style: &Style) -> io::Result<()> {
         self.history_place().map_or(Ok(()), |place| {
-            let text = format!("of the answer with every load case acting at once; the tables stand {place}");
+            let text = format!("{what}of the answer with every load case acting at once; the tables stand {place}");
             style.paragraph(out, Role::Muted, &text)
         })
     }

@@ -54,6 +54,9 @@ fn after_a_history_what_is_not_of_it_says_so_and_pictures_have_its_loads() {
         let said = text(&mut session, line);
         assert!(said.starts_with("of the answer with every load case acting at once; "), "{line}: {said}");
     }
+    let said = text(&mut session, "summary");
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("safety and limits are of the answer with every load case acting at once; "), "{said}");
     // The push has left.
     let said = text(&mut session, "plot structure");
     assert!(said.contains("load up to 100 kN") && !said.contains("weight + push"), "{said}");

@@ -241,6 +241,8 @@ fn the_summary_fits_on_a_screen() {
         assert!(text.lines().any(|line| line.split_whitespace().eq(row.iter().copied())), "{row:?}: {text}");
     }
     assert!(text.lines().count() <= 40, "{text}");
+    // bars of the plane have N, Q and M, each once, and no torque
+    assert!(!text.contains("V_y") && !text.contains("torque") && text.matches("bending moment").count() == 1, "{text}");
     let report = report(&mut session, "summary");
     assert!((report["sum_of_reactions"]["fy"].as_f64().unwrap() - 3.0).abs() < 1e-9, "{report}");
 }

@@ -4,6 +4,7 @@
 //! the names of a scenario; the values are read by [`crate::path::quantity`].
 
 mod names;
+mod of_bar;
 mod of_stress;
 mod read;
 mod words;
@@ -13,11 +14,12 @@ use std::fmt;
 use super::units::Units;
 
 pub use names::{Names, fits};
+pub use of_bar::Internal;
 pub use of_stress::OfStress;
 pub use read::{QuantityError, read, read_all, read_text};
 pub use words::{
-    Dimension, Internal, Meaning, OfAnswer, OfLoad, OfNode, OfPair, Over, WORDS, Word, displacement_words, entry,
-    pair_words, states_of, words_of,
+    Dimension, Meaning, OfAnswer, OfLoad, OfNode, OfPair, Over, WORDS, Word, displacement_words, entry, pair_words,
+    states_of, words_of,
 };
 
 /// Where on a bar.

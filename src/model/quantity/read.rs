@@ -1,7 +1,8 @@
 //! The words of a command, a probe or an option → quantities, against the names of a scenario.
 
+use super::of_bar::Internal;
 use super::of_stress::OfStress;
-use super::words::{Internal, Meaning, Over, Word, entry, pair_words, states_of, words_of};
+use super::words::{Meaning, Over, Word, entry, pair_words, states_of, words_of};
 use super::{BarPlace, Names, Quantity, ResultantPart, fits};
 use crate::model::structure::Dimension;
 use crate::model::words::{did_you_mean_typed, no_such};

@@ -60,7 +60,7 @@ impl Session {
             return Err(no_derivatives(name, &format!("the loads are not a linear function of it: {place}")));
         }
         io.show(&found, |out, style| {
-            self.write_not_of_history(out, style)?;
+            self.write_not_of_history("", out, style)?;
             view::sensitivity::write(out, &found, parameter, style)
         })?;
         Ok(())

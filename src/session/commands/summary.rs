@@ -6,6 +6,7 @@ use serde_json::{Map, Value as Json};
 
 use crate::answer::record::Reaction;
 use crate::model::quantity::{BarPlace, Internal, Names, OfPair, Over, Quantity};
+use crate::model::structure::Dimension;
 use crate::path::quantity::{Facts, NoValue, Resultant, Value};
 use crate::view;
 use crate::view::summary::{self, Peak, Safety};
@@ -61,7 +62,11 @@ impl Session {
         io.show(&report, |out, style| {
             writeln!(out, "{}", view::status::line(&answer, None, &units, style))?;
             self.write_place_shown(out, style)?;
-            view::summary::write(out, &summary, &units, style)
+            view::summary::write(out, &summary, &units, style)?;
+            if summary.safety.is_empty() {
+                return Ok(());
+            }
+            self.write_not_of_history("safety and limits are ", out, style)
         })?;
         Ok(())
     }
@@ -147,16 +152,15 @@ fn peaks(facts: &Facts<'_>, names: &Names<'_>) -> Vec<Peak> {
             Peak { what, quantity: Quantity::Pairs(Over::Max, which, String::new()), value, at }
         })
     };
-    let bars = |what: &'static str, which: Internal| {
-        let value = |bar: &&str| {
-            let value = facts.value(&Quantity::Bar(which, (*bar).to_owned(), BarPlace::Extreme)).ok()?.number()?;
-            Some((value, (*bar).to_owned()))
-        };
-        let most = names.bars().iter().filter_map(value).reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a });
+    let bars = |which: Internal| {
         let quantity = |bar: &str| Quantity::Bar(which, bar.to_owned(), BarPlace::Extreme);
-        most.map(|(value, at)| {
-            let quantity = quantity(&at);
-            Peak { what, quantity, value, at: if value == 0.0 { String::new() } else { at } }
+        let value = |bar: &&str| Some((facts.value(&quantity(bar)).ok()?.number()?, (*bar).to_owned()));
+        let most = names.bars().iter().filter_map(value).reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a });
+        most.map(|(value, at)| Peak {
+            what: which.name(),
+            quantity: quantity(&at),
+            value,
+            at: if value == 0.0 { String::new() } else { at },
         })
     };
     let displacement = facts.value(&Quantity::LargestDisplacement).ok().and_then(|value| value.number());
@@ -172,16 +176,9 @@ fn peaks(facts: &Facts<'_>, names: &Names<'_>) -> Vec<Peak> {
         largest("slip", OfPair::Slip),
         largest("opening", OfPair::Opening),
         displacement,
-        bars("normal force", Internal::Axial),
-        bars("shear force", Internal::Shear),
-        bars("bending moment", Internal::Moment),
-        bars("shear force V_y", Internal::ShearY),
-        bars("shear force V_z", Internal::ShearZ),
-        bars("torque", Internal::Torsion),
-        bars("bending moment M_y", Internal::MomentY),
-        bars("bending moment M_z", Internal::MomentZ),
     ]
     .into_iter()
+    .chain(Internal::of(names.dimension == Dimension::Space).iter().map(|which| bars(*which)))
     .flatten()
     .collect()
 }

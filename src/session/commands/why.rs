@@ -88,7 +88,7 @@ impl Session {
         let ray = moved.as_ref().map(|(direction, _)| *direction);
         let report = WhyReport { pair, cause: &cause, pivots: &turned, margins: &margins, ray };
         io.show(&report, |out, style| {
-            self.write_not_of_history(out, style)?;
+            self.write_not_of_history("", out, style)?;
             let label = format!("{id} {state}: ");
             for line in style.hanging(&style.text(&label), &style.text(&cause)) {
                 writeln!(out, "{line}")?;
