@@ -18,7 +18,7 @@ use crate::contact::written::ContactLcp;
 use crate::fem::Displacements;
 use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::pivot::Cycle;
-use crate::model::structure::Dimension;
+use crate::model::structure::{Dimension, Structure};
 use crate::model::uses::Redone;
 use crate::model::vector::dot;
 use crate::text::words::{list, short};
@@ -66,6 +66,7 @@ impl Prepared {
             answer.members = self.members(&u, &problem.factors);
             answer.reactions = self.reactions(&u, &state.force, &problem.factors);
             answer.displacements = Some(NodeDisplacement::of_nodes(structure, &u.0));
+            answer.notes.extend(note_on_large_displacements(structure, &u));
         }
         equilibrium
     }
@@ -213,6 +214,21 @@ fn notes_on_shared_forces(problem: &ContactProblem, state: &JointState) -> Vec<S
         format!("joints of {} repeat one another: {words}", list(&ids))
     };
     kinds.iter().filter(|(pairs, _)| !pairs.is_empty()).map(note).collect()
+}
+
+/// What is said of displacements larger than the structure itself: equilibrium is written on the structure as it is drawn, so
+/// they are no prediction, and most often a slip of units.
+fn note_on_large_displacements(structure: &Structure, u: &Displacements) -> Option<String> {
+    let size = structure.extent().iter().fold(0.0, |size: f64, side| size.hypot(*side));
+    let length = |[x, y, z, ..]: &[f64; 6]| x.hypot(*y).hypot(*z);
+    let largest = u.0.iter().map(length).fold(0.0, f64::max);
+    (size > 0.0 && largest > size).then(|| {
+        format!(
+            "the largest displacement is {} times the size of the structure, and equilibrium is written for small ones: do the \
+             units of stiffnesses, loads and expansions fit together?",
+            short(largest / size)
+        )
+    })
 }
 
 fn end_forces(dimension: Dimension, [n, q, m, vz, my, t]: [f64; 6]) -> EndForces {

@@ -103,3 +103,26 @@ fn a_moment_acts_alone() {
     assert!(expected.contains("1.5"), "{expected}");
     assert_eq!(beam(r#"{"at": "B", "moment": 3}"#), expected);
 }
+
+#[test]
+fn displacements_beyond_the_size_of_the_structure_are_told() {
+    // The free end goes α T L = 36 L, less f N L/(E A) < 1e-6 L.
+    let bar = |expansion: &str| {
+        format!(
+            r#"{{"format": "stickslip/1", "title": "bar",
+             "materials": {{"s": {{"E": 2.1e8, "nu": 0.3, "expansion": {expansion}}}}}, "sections": {{"s": {{"area": 0.0156, "inertia": 9.2e-4}}}},
+             "nodes": {{"C": [0, 0], "D": [20, 0]}}, "bars": [{{"id": "bar", "nodes": ["C", "D"], "material": "s", "section": "s"}}],
+             "supports": [{{"at": "C", "fixed": ["x", "y"]}}],
+             "contacts": [{{"id": "pad", "node": "D", "against": "ground", "normal": [0, 1], "friction": 0.05}}],
+             "loads": {{"heat": {{"items": [{{"temperature": {{"on": ["bar"], "change": 30}}}}]}},
+                       "weight": {{"items": [{{"point": {{"at": "D", "force": [0, -10]}}}}]}}}}}}"#
+        )
+    };
+    let said = |expansion: &str| {
+        let status = text(&mut read(&bar(expansion)), "status");
+        status.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let words = "the largest displacement is 36.0 times the size of the structure";
+    assert!(said("1.2").contains(words), "{}", said("1.2"));
+    assert!(!said("1.2e-5").contains("times the size"), "{}", said("1.2e-5"));
+}
