@@ -105,6 +105,17 @@ fn a_moment_acts_alone() {
 }
 
 #[test]
+fn a_range_behind_an_equals_sign_is_told_where_it_stands() {
+    let mut session = read(BEARING);
+    for line in
+        ["map P=0..40 f 0..1", "map P 0..40 f=0..1", "envelope z_t pad over P=0..40", "find P=0..40 where z_t pad = 1"]
+    {
+        let said = told(&mut session, line).unwrap_err();
+        assert!(said.contains("`: here the range stands behind the name: `"), "{line}: {said}");
+    }
+}
+
+#[test]
 fn displacements_beyond_the_size_of_the_structure_are_told() {
     // The free end goes α T L = 36 L, less f N L/(E A) < 1e-6 L.
     let bar = |expansion: &str| {

@@ -88,6 +88,12 @@ impl Session {
             return Ok(name);
         }
         if !self.now.values.contains_key(name) {
+            // as the shell's `--vary` has it
+            if let Some((known, range)) = name.split_once('=')
+                && (self.now.values.contains_key(known) || cases.iter().any(|case| case == known))
+            {
+                return refused(format!("`{name}`: here the range stands behind the name: `{known} {range}`"));
+            }
             let names = self.now.values.iter().map(|(name, _)| name.as_str()).chain(cases.iter().map(String::as_str));
             return refused(no_such("parameter or load case", name, names));
         }
