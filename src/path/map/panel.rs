@@ -27,6 +27,9 @@ const HALVINGS: usize = 8;
 const NESTED: usize = 64;
 /// Most lines of one map.
 const LINES: usize = 20_000;
+/// The same where each line is a row of answers, not an exact path: minutes in place of hours, and areas drawn by as many lines
+/// are good to some 1e-4.
+const LINES_IN_STEPS: usize = 1_000;
 
 /// Nodes of the Gauss–Kronrod rule of 15 places on [0, 1] (its lower half and the middle); every second belongs to
 /// Gauss's rule of 7. Piessens et al., QUADPACK (1983).
@@ -155,7 +158,7 @@ pub struct Cutter<'a> {
 pub enum LeftOut {
     /// It was stopped.
     Stopped,
-    /// [`LINES`] lines did not tell its regions apart.
+    /// As many lines as a map may have did not tell its regions apart.
     Intricate,
 }
 
@@ -167,7 +170,8 @@ impl<'a> Cutter<'a> {
 
     /// The lines at these values.
     fn at(&mut self, places: &[f64]) -> Result<Vec<Line>, PathError> {
-        if self.seen.len() + places.len() > LINES {
+        let most = if self.known == Known::Exactly { LINES } else { LINES_IN_STEPS };
+        if self.seen.len() + places.len() > most {
             self.left_out = Some((LeftOut::Intricate, self.seen.len()));
             return Err(PathError::Interrupted);
         }
