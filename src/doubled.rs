@@ -238,10 +238,15 @@ impl Sum {
 
 /// Σ a_i b_i + start, rounded once.
 pub fn dot<'a>(start: f64, terms: impl Iterator<Item = (&'a f64, &'a f64)>) -> f64 {
+    sum_of_products(start, terms).value()
+}
+
+/// The same before it is rounded.
+pub fn sum_of_products<'a>(start: f64, terms: impl Iterator<Item = (&'a f64, &'a f64)>) -> Sum {
     let mut sum = Sum::default();
     sum.add(start);
     terms.filter(|(a, b)| **a != 0.0 && **b != 0.0).for_each(|(a, b)| sum.add_product(*a, *b));
-    sum.value()
+    sum
 }
 
 #[cfg(test)]

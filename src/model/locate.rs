@@ -1,9 +1,23 @@
 //! A JSON text as a tree with places: offset ↔ line and column, offset ↔ JSON path.
 
 use jsonc_parser::errors::ParseErrorKind;
-use jsonc_parser::{CollectOptions, parse_to_ast};
+use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
 
-use super::tree::{Kind, Node, OPTIONS, Tree};
+use super::tree::{Kind, Node, Tree};
+
+/// JSON with comments and trailing commas, nothing else.
+const OPTIONS: ParseOptions = ParseOptions {
+    allow_comments: true,
+    allow_loose_object_property_names: false,
+    allow_trailing_commas: true,
+    allow_missing_commas: false,
+    allow_single_quoted_strings: false,
+    allow_hexadecimal_numbers: false,
+    allow_unary_plus_numbers: false,
+    allow_bare_decimal_point_numbers: false,
+    allow_non_finite_numbers: false,
+    allow_extended_string_escapes: false,
+};
 
 /// A parsed JSON text.
 pub struct Document<'t> {
@@ -31,22 +45,10 @@ impl<'t> Document<'t> {
                 help: "save the file as UTF-8 without BOM",
             });
         }
-        let Some(tree) = Tree::read(text) else { return Err(syntax_error(text)) };
-        // serde_json is the judge of what is JSON; the tree, whose messages are kinder, comes first.
-        if let Err(error) = serde_json::from_str::<serde::de::IgnoredAny>(&strict(text)) {
-            let place = (error.line(), error.column());
-            let message = error.to_string();
-            let message = message.strip_suffix(&format!(" at line {} column {}", place.0, place.1)).unwrap_or(&message);
-            // An overflowing number is JSON; its place is found by the typed reading.
-            if message != "number out of range" {
-                return Err(SyntaxError {
-                    offset: offset_of_line(text, place.0, place.1),
-                    message: format!("not JSON: {message}"),
-                    help: SYNTAX,
-                });
-            }
+        match Tree::read(text) {
+            Some(tree) => Ok(Document { text, tree }),
+            None => Err(syntax_error(text)),
         }
-        Ok(Document { text, tree })
     }
 
     /// The outermost value.
@@ -124,7 +126,8 @@ impl<'t> Document<'t> {
     }
 }
 
-/// What is wrong with a text that is not JSON, in the words of a parser that says more.
+/// What is wrong with a text that is not JSON, in the words of a parser that says more; what that one forgives, in those
+/// of another.
 fn syntax_error(text: &str) -> SyntaxError {
     match parse_to_ast(text, &CollectOptions::default(), &OPTIONS) {
         Err(error) => SyntaxError {
@@ -137,8 +140,20 @@ fn syntax_error(text: &str) -> SyntaxError {
             message: "not JSON: the file is empty".into(),
             help: "a scenario is a JSON object: { \"format\": \"stickslip/1\", … }",
         },
-        // The parser forgives what the tree does not, or the text has 4 GiB.
-        Ok(_) => SyntaxError { offset: 0, message: "not JSON that can be read here".into(), help: SYNTAX },
+        Ok(_) => match serde_json::from_str::<serde::de::IgnoredAny>(&strict(text)) {
+            Err(error) => {
+                let (line, column) = (error.line(), error.column());
+                let message = error.to_string();
+                let message = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message);
+                SyntaxError {
+                    offset: offset_of_line(text, line, column),
+                    message: format!("not JSON: {message}"),
+                    help: SYNTAX,
+                }
+            }
+            // Half of a character that is written in two (\u), values in one another too deep, or 4 GiB.
+            Ok(_) => SyntaxError { offset: 0, message: "not JSON that can be read here".into(), help: SYNTAX },
+        },
     }
 }
 
@@ -159,7 +174,7 @@ fn strict(text: &str) -> std::borrow::Cow<'_, str> {
                 end + 1
             }
             [b'/', b'/', ..] => rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(rest.len()),
-            [b'/', b'*', ..] => text[at..].find("*/").map_or(rest.len(), |end| end + 2),
+            [b'/', b'*', ..] => text[at + 2..].find("*/").map_or(rest.len(), |end| end + 4),
             _ => 1,
         };
         match rest[0] {
@@ -243,5 +258,94 @@ fn advice(kind: &ParseErrorKind, rest: &str) -> &'static str {
         ParseErrorKind::UnterminatedArray => "close the list with `]`",
         ParseErrorKind::UnterminatedObject => "close the object with `}`",
         _ => SYNTAX,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A text of JSON by two other parsers, which both know more than one of its rules.
+    fn is_json(text: &str) -> bool {
+        let is_parsed =
+            parse_to_ast(text, &CollectOptions::default(), &OPTIONS).is_ok_and(|found| found.value.is_some());
+        is_parsed && serde_json::from_str::<serde::de::IgnoredAny>(&strict(text)).is_ok()
+    }
+
+    const PIECES: [&str; 40] = [
+        "{",
+        "}",
+        "[",
+        "]",
+        ",",
+        ":",
+        "\"",
+        "\\",
+        "\"a\"",
+        "\"\\n\"",
+        "\"\\x\"",
+        "\"\\u00e9\"",
+        "\"\\u00\"",
+        "\"é\"",
+        "\"\t\"",
+        "\"a\":",
+        "0",
+        "-",
+        "1",
+        "12",
+        "01",
+        ".",
+        ".5",
+        "e3",
+        "E+2",
+        "-0.5e-7",
+        "true",
+        "nul",
+        "null",
+        "falsey",
+        " ",
+        "\n",
+        "\u{b}",
+        "\u{a0}",
+        "// c\n",
+        "/* c */",
+        "/*/",
+        "*/",
+        "'a'",
+        "+1",
+    ];
+
+    const TEXTS: [&str; 4] = [
+        r#"{"a":[1,-2.5e3,[],{}],"b":{"c":null,"d":[true,false]},"":"x\n\"y\"" }"#,
+        "{ /* first */ \"a\": [1, \"b\\n\",],\n // x\n \"c\": { \"d\": 4 } , }",
+        "[[0,1.25],[1E5,-0.0e+1]]",
+        "7",
+    ];
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4000))]
+
+        #[test]
+        fn a_text_is_read_where_others_read_it(
+            text in prop::sample::select(TEXTS.to_vec()),
+            changes in prop::collection::vec((any::<prop::sample::Index>(), 0..3_usize, prop::sample::select(PIECES.to_vec())), 0..4),
+        ) {
+            let mut text = text.to_owned();
+            for (at, length, piece) in changes {
+                let from = at.index(text.len() + 1);
+                let to = (from + length).min(text.len());
+                if text.is_char_boundary(from) && text.is_char_boundary(to) {
+                    text.replace_range(from..to, piece);
+                }
+            }
+            prop_assert_eq!(Tree::read(&text).is_some(), is_json(&text), "{}", text);
+        }
+    }
+
+    #[test]
+    fn a_comment_begins_anew_behind_its_first_two_characters() {
+        assert_eq!(strict("[1 /*/ , */]"), "[1         ]");
     }
 }

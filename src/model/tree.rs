@@ -1,34 +1,6 @@
 //! The values of a JSON text with their places, in one list: 16 bytes for a value or a key, so that a file of many
-//! numbers takes hardly more room than its text.
-
-use std::borrow::Cow;
-
-use jsonc_parser::tokens::Token;
-use jsonc_parser::{ParseOptions, Scanner, ScannerOptions};
-
-/// JSON with comments and trailing commas, nothing else.
-pub const OPTIONS: ParseOptions = ParseOptions {
-    allow_comments: true,
-    allow_loose_object_property_names: false,
-    allow_trailing_commas: true,
-    allow_missing_commas: false,
-    allow_single_quoted_strings: false,
-    allow_hexadecimal_numbers: false,
-    allow_unary_plus_numbers: false,
-    allow_bare_decimal_point_numbers: false,
-    allow_non_finite_numbers: false,
-    allow_extended_string_escapes: false,
-};
-
-/// The part of it that belongs to tokens.
-const SCANNER: ScannerOptions = ScannerOptions {
-    allow_single_quoted_strings: OPTIONS.allow_single_quoted_strings,
-    allow_hexadecimal_numbers: OPTIONS.allow_hexadecimal_numbers,
-    allow_unary_plus_numbers: OPTIONS.allow_unary_plus_numbers,
-    allow_bare_decimal_point_numbers: OPTIONS.allow_bare_decimal_point_numbers,
-    allow_non_finite_numbers: OPTIONS.allow_non_finite_numbers,
-    allow_extended_string_escapes: OPTIONS.allow_extended_string_escapes,
-};
+//! numbers takes hardly more room than its text. Read in one pass, by the grammar of RFC 8259 with comments and trailing
+//! commas: a matrix is millions of numbers.
 
 /// As deep as values may lie in one another.
 const DEEPEST: usize = 512;
@@ -72,10 +44,10 @@ impl<'t> Tree<'t> {
         // Behind each of these stands a value, or a key.
         let most = 1 + text.bytes().filter(|byte| matches!(byte, b'{' | b'[' | b',' | b':')).count();
         let tree = Tree { text, cells: Vec::with_capacity(most), escaped: Vec::new() };
-        let mut reader = Reader { tree, scanner: Scanner::new(text, &SCANNER) };
-        let first = reader.token()??;
-        reader.value(first, 0)?;
-        reader.token()?.is_none().then_some(reader.tree)
+        let mut reader = Reader { tree, bytes: text.as_bytes(), at: 0 };
+        reader.value(0)?;
+        let is_end = reader.next().is_none() && reader.at == text.len();
+        is_end.then_some(reader.tree)
     }
 
     /// The outermost value.
@@ -86,74 +58,135 @@ impl<'t> Tree<'t> {
 
 struct Reader<'t> {
     tree: Tree<'t>,
-    scanner: Scanner<'t>,
+    bytes: &'t [u8],
+    /// Offset of what is read next.
+    at: usize,
 }
 
-impl<'t> Reader<'t> {
-    /// The next token that is not a comment, `Some(None)` at the end; `None`: no token of JSON.
-    fn token(&mut self) -> Option<Option<Token<'t>>> {
+impl Reader<'_> {
+    /// The next byte behind blanks and comments, not taken; `None` at the end, and at a comment that does not end.
+    fn next(&mut self) -> Option<u8> {
         loop {
-            match self.scanner.scan().ok()? {
-                Some(Token::CommentLine(_) | Token::CommentBlock(_)) => {}
-                token => return Some(token),
-            }
+            self.at += match &self.bytes[self.at..] {
+                [b' ' | b'\n' | b'\r' | b'\t', ..] => 1,
+                [b'/', b'/', rest @ ..] => {
+                    2 + rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(rest.len())
+                }
+                [b'/', b'*', rest @ ..] => 4 + rest.windows(2).position(|two| two == b"*/")?,
+                rest => return rest.first().copied(),
+            };
         }
     }
 
-    /// Puts the cell of the present token down.
-    fn cell(&mut self, kind: Kind) -> usize {
-        let (start, end) = (self.scanner.token_start() as u32, self.scanner.token_end() as u32);
+    /// Puts the cell of what was read from `start` on down.
+    fn cell(&mut self, kind: Kind, start: usize) -> usize {
         let at = self.tree.cells.len();
-        self.tree.cells.push(Cell { start, next: at as u32 + 1, extent: end - start, kind });
+        let extent = (self.at - start) as u32;
+        self.tree.cells.push(Cell { start: start as u32, next: at as u32 + 1, extent, kind });
         at
     }
 
-    fn string(&mut self, says: Cow<'t, str>) {
-        let at = self.cell(Kind::String);
-        if let Cow::Owned(says) = says {
-            self.tree.escaped.push((at as u32, says));
+    /// The value that comes next.
+    fn value(&mut self, depth: usize) -> Option<()> {
+        match self.next()? {
+            b'{' => self.entries(Kind::Object, depth),
+            b'[' => self.entries(Kind::Array, depth),
+            b'"' => self.string(),
+            b't' => self.word(Kind::Boolean, "true"),
+            b'f' => self.word(Kind::Boolean, "false"),
+            b'n' => self.word(Kind::Null, "null"),
+            _ => self.number(),
         }
     }
 
-    /// The value that begins with a token.
-    fn value(&mut self, token: Token<'t>, depth: usize) -> Option<()> {
-        match token {
-            Token::OpenBrace => self.entries(Kind::Object, depth)?,
-            Token::OpenBracket => self.entries(Kind::Array, depth)?,
-            Token::String(says) => self.string(says),
-            Token::Number(_) => _ = self.cell(Kind::Number),
-            Token::Boolean(_) => _ = self.cell(Kind::Boolean),
-            Token::Null => _ = self.cell(Kind::Null),
-            _ => return None,
+    fn word(&mut self, kind: Kind, word: &str) -> Option<()> {
+        let start = self.at;
+        self.bytes[start..].starts_with(word.as_bytes()).then_some(())?;
+        self.at += word.len();
+        self.cell(kind, start);
+        Some(())
+    }
+
+    fn takes(&mut self, one_of: &[u8]) -> bool {
+        let found = self.bytes.get(self.at).is_some_and(|byte| one_of.contains(byte));
+        self.at += usize::from(found);
+        found
+    }
+
+    fn digits(&mut self) -> Option<()> {
+        let count = self.bytes[self.at..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+        self.at += count;
+        (count > 0).then_some(())
+    }
+
+    fn number(&mut self) -> Option<()> {
+        let start = self.at;
+        self.takes(b"-");
+        // No digit follows a leading zero.
+        if !self.takes(b"0") {
+            self.digits()?;
+        }
+        if self.takes(b".") {
+            self.digits()?;
+        }
+        if self.takes(b"eE") {
+            self.takes(b"+-");
+            self.digits()?;
+        }
+        self.cell(Kind::Number, start);
+        Some(())
+    }
+
+    /// A string, from its quotation mark on.
+    fn string(&mut self) -> Option<()> {
+        let start = self.at;
+        let mut is_plain = true;
+        self.at += 1;
+        loop {
+            match self.bytes.get(self.at)? {
+                b'"' => break,
+                b'\\' => {
+                    is_plain = false;
+                    self.at += 2;
+                }
+                0..b' ' => return None,
+                _ => self.at += 1,
+            }
+        }
+        self.at += 1;
+        let at = self.cell(Kind::String, start);
+        if !is_plain {
+            let says = serde_json::from_str(&self.tree.text[start..self.at]).ok()?;
+            self.tree.escaped.push((at as u32, says));
         }
         Some(())
     }
 
-    /// The entries of an object or a list up to its end.
+    /// An object or a list, from its bracket on.
     fn entries(&mut self, kind: Kind, depth: usize) -> Option<()> {
         if depth == DEEPEST {
             return None;
         }
-        let at = self.cell(kind);
-        let end = if kind == Kind::Object { Token::CloseBrace } else { Token::CloseBracket };
+        let at = self.cell(kind, self.at);
+        let end = if kind == Kind::Object { b'}' } else { b']' };
         let mut count = 0;
-        let mut token = self.token()??;
-        while token != end {
+        self.at += 1;
+        while self.next()? != end {
             if kind == Kind::Object {
-                let Token::String(key) = token else { return None };
-                self.string(key);
-                let Token::Colon = self.token()?? else { return None };
-                token = self.token()??;
+                (self.next()? == b'"').then_some(())?;
+                self.string()?;
+                (self.next()? == b':').then_some(())?;
+                self.at += 1;
             }
-            self.value(token, depth + 1)?;
+            self.value(depth + 1)?;
             count += 1;
-            token = self.token()??;
-            if token == Token::Comma {
-                token = self.token()??;
-            } else if token != end {
-                return None;
+            match self.next()? {
+                b',' => self.at += 1,
+                byte if byte == end => {}
+                _ => return None,
             }
         }
+        self.at += 1;
         let next = self.tree.cells.len() as u32;
         let cell = &mut self.tree.cells[at];
         (cell.next, cell.extent) = (next, count);

@@ -21,6 +21,9 @@ use stickslip_numerics::decompositions::smallest_eigenvalue;
 /// An eigenvalue below −this makes a matrix unusable, after scaling to unit diagonal.
 const NEGATIVE: f64 = 1e-9;
 
+/// Rows and columns of a matrix that are looked at together.
+const SQUARE: usize = 64;
+
 /// Builds the contact system of a file; the remarks are for the user.
 ///
 /// # Errors
@@ -33,7 +36,21 @@ pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, Vec<St
 }
 
 fn symmetric(rows: &[Vec<f64>]) -> DMatrix<f64> {
-    DMatrix::from_fn(rows.len(), rows.len(), |i, j| 0.5 * (rows[i][j] + rows[j][i]))
+    let n = rows.len();
+    let mut matrix = DMatrix::from_fn(n, n, |i, j| rows[j][i]);
+    // Square by square: of a whole row each entry lies on another page.
+    for first in (0..n).step_by(SQUARE) {
+        for below in (first..n).step_by(SQUARE) {
+            for j in first..n.min(first + SQUARE) {
+                for i in below.max(j + 1)..n.min(below + SQUARE) {
+                    let mean = 0.5 * (matrix[(i, j)] + matrix[(j, i)]);
+                    matrix[(i, j)] = mean;
+                    matrix[(j, i)] = mean;
+                }
+            }
+        }
+    }
+    matrix
 }
 
 /// The null space of a matrix, refused where it is indefinite.

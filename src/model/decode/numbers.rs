@@ -279,8 +279,9 @@ impl<'d> Cursor<'d> {
 
     /// `count` numbers.
     pub fn numbers(self, count: usize, what: &str) -> Option<Vec<f64>> {
-        let entries = self.list_of(count, what)?;
-        let numbers: Vec<Option<f64>> = entries.map(Cursor::number).collect();
-        numbers.into_iter().collect()
+        let mut numbers = Vec::with_capacity(count);
+        // All of them are looked at, whatever is wrong with the first.
+        self.list_of(count, what)?.for_each(|entry| numbers.extend(entry.number()));
+        (numbers.len() == count).then_some(numbers)
     }
 }

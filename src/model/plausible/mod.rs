@@ -32,13 +32,17 @@ impl Warning {
 
 /// All that is odd in the file itself, under the parameter values of the file.
 pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
-    // The text was parsed when it was loaded.
-    let Ok(document) = Document::parse(&scenario.text) else { return Vec::new() };
-    let file = document.root();
+    let structure = match &scenario.source {
+        Source::Structure(structure) => Some(structure),
+        Source::ContactSystem(_) | Source::Lcp(_) => None,
+    };
     let mut warnings = unused::parameters(scenario);
-    warnings.extend(units::of_parameters(scenario, file));
-    match &scenario.source {
-        Source::Structure(structure) => {
+    // The text was parsed when it was loaded; a matrix is not read once more for nothing.
+    let is_asked = structure.is_some() || !scenario.parameters.is_empty();
+    if let Some(document) = is_asked.then(|| Document::parse(&scenario.text)).and_then(Result::ok) {
+        let file = document.root();
+        warnings.extend(units::of_parameters(scenario, file));
+        if let Some(structure) = structure {
             warnings.extend(unused::materials_and_sections(structure, file));
             warnings.extend(stiffness::materials(scenario, structure, file));
             warnings.extend(stiffness::weights(scenario, structure, file));
@@ -46,8 +50,9 @@ pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
             warnings.extend(normals::upside_down(scenario, structure));
             warnings.extend(loads::of_structure(scenario, structure, file));
         }
-        Source::ContactSystem(system) => warnings.extend(loads::of_contact_system(scenario, system)),
-        Source::Lcp(_) => {}
+    }
+    if let Source::ContactSystem(system) = &scenario.source {
+        warnings.extend(loads::of_contact_system(scenario, system));
     }
     warnings
 }
