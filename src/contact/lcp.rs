@@ -123,6 +123,10 @@ fn base_of(problem: &ContactProblem, stored: &[RowId], unit: f64) -> DMatrix<f64
     let stiffness = system.pivot_stiffness();
     let joints: Vec<Vec<(usize, f64)>> =
         stored.iter().map(|row| row.joints(system, problem.polygon).filter(|(_, d)| *d != 0.0).collect()).collect();
+    // In the plane, where every pair has both joints, D is 1.
+    if joints.len() == stiffness.nrows() && joints.iter().enumerate().all(|(row, own)| own[..] == [(row, 1.0)]) {
+        return stiffness / unit;
+    }
     let mut entries = Vec::with_capacity(stored.len() * stored.len());
     for column in &joints {
         if let [(joint, 1.0)] = column[..] {

@@ -12,7 +12,6 @@ use nalgebra::DVector;
 
 use super::displacements::Displacements;
 use super::element::{slots, spring, stiffness};
-use super::kernel::mutual_displacements;
 use super::main_system::MainSystem;
 use super::recovery::own_displacements;
 use crate::doubled::Real;
@@ -31,6 +30,9 @@ const DOUBLED_ROW: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
 
 /// The same of a row of R z with z from an LCP (method §4, "Zero").
 const JOINT_ROW: f64 = 64.0 * f64::EPSILON;
+
+/// States that share each look at K.
+const TOGETHER: usize = 8;
 
 /// A state whose equilibrium is asked for.
 pub struct BalancedState<'a> {
@@ -120,17 +122,43 @@ impl MainSystem {
         let independent: Vec<(&[f64], DVector<f64>)> =
             states.iter().map(|state| (state.factors, self.of_independent(&state.dislocation))).collect();
         let found = self.unrefined_displacements(&independent);
-        (states.iter().zip(found))
-            .map(|(state, u)| {
-                let u = Displacements::from(self.dofs.scatter(&u));
-                let residual = self.unheld(self.unbalanced(&u, state.force, state.factors));
-                let rounding = self.handed_on(self.rounding(&u, state.factors));
-                let nothing = vec![0.0; residual.len()];
-                let compatibility = self.compatibility_residual(&u, &state.dislocation, &state.terms);
-                let bound = compatibility + largest_share(&residual, &nothing, &rounding);
+        let mut bounds = Vec::with_capacity(states.len());
+        for (states, found) in states.chunks(TOGETHER).zip(found.chunks(TOGETHER)) {
+            let summed = match found {
+                [u] => self.forces_with_terms::<1>(std::slice::from_ref(u)),
+                _ => self.forces_with_terms::<TOGETHER>(found),
+            };
+            bounds.extend(states.iter().zip(found).zip(summed).map(|((state, u), summed)| {
+                let bound = self.unexplained(state, u, summed);
                 if bound <= TOLERANCE { bound } else { whole(state) }
-            })
-            .collect()
+            }));
+        }
+        bounds
+    }
+
+    /// K u and Σ_k |K_ik||u_k| of each of up to N displacements of the base dofs.
+    fn forces_with_terms<const N: usize>(&self, fields: &[Vec<f64>]) -> Vec<[Vec<f64>; 2]> {
+        let at = |dof: usize| std::array::from_fn(|k| fields.get(k).map_or(0.0, |u| u[dof]));
+        let side_by_side: Vec<[f64; N]> = (0..self.dofs.count()).map(at).collect();
+        let both = self.k.times_with_terms(&side_by_side);
+        (0..fields.len()).map(|k| [0, 1].map(|which| both.iter().map(|row| row[which][k]).collect())).collect()
+    }
+
+    /// The compatibility residual of a state, and the largest force that is left, as a share of 1e9 times what rounding
+    /// may leave.
+    fn unexplained(&self, state: &BalancedState<'_>, u: &[f64], [forces, mut terms]: [Vec<f64>; 2]) -> f64 {
+        if let Some(sizes) = self.sizes_where_supports_settle(u, state.factors) {
+            terms = self.k.times_absolute(&sizes);
+        }
+        let residual = self.unheld(self.minus_loads(forces, state.force, state.factors));
+        let rounding = self.handed_on(self.rounding_of(u, &terms, 0.0, state.factors));
+        let nothing = vec![0.0; residual.len()];
+        let bound = largest_share(&residual, &nothing, &rounding);
+        if self.repeated.is_empty() {
+            return bound;
+        }
+        let u = Displacements::from(self.dofs.scatter(u));
+        bound + self.compatibility_residual(&u, &state.dislocation, &state.terms)
     }
 
     /// Magnitudes summed over ties and bodies, zero where a support holds.
@@ -225,26 +253,40 @@ impl MainSystem {
         }
     }
 
+    /// |u| with what supports that settle add to its terms: u is a sum then, S s and the rest, that may cancel (an open
+    /// gap, say). `None` where none settles.
+    fn sizes_where_supports_settle(&self, base: &[f64], factors: &[f64]) -> Option<Vec<f64>> {
+        let settled = self.settlement(factors)?;
+        Some(std::iter::zip(base, settled).map(|(u, s)| u.abs() + s.abs()).collect())
+    }
+
     /// What rounding may leave of each row.
     pub(super) fn rounding(&self, u: &Displacements, factors: &[f64]) -> Vec<f64> {
         let base = self.dofs.gather(&u.0);
-        // Where supports settle u is a sum, S s and the rest, that may cancel: an open gap, say.
-        let sizes: Vec<f64> = match self.settlement(factors) {
-            None => base.clone(),
-            Some(settled) => std::iter::zip(&base, settled).map(|(u, s)| u.abs() + s.abs()).collect(),
-        };
-        let terms = self.k.times_absolute(&sizes);
+        let sizes = self.sizes_where_supports_settle(&base, factors);
+        let terms = self.k.times_absolute(sizes.as_ref().unwrap_or(&base));
+        self.rounding_of(&base, &terms, u.1.as_ref().map_or(0.0, |tail| tail.error), factors)
+    }
+
+    /// The same from u on the base dofs, the terms Σ_k |K_ik||u_k| of each row, and what is left of the energy of the
+    /// error of u.
+    fn rounding_of(&self, base: &[f64], terms: &[f64], error: f64, factors: &[f64]) -> Vec<f64> {
         // λ is as good as R and RF, and R and RF as good as the energies they come from.
-        let z = mutual_displacements(&self.joints, &u.0);
         let root = |joint: usize| self.r[(joint, joint)].max(0.0).sqrt();
-        let dislocation: f64 = z.iter().enumerate().map(|(joint, z)| root(joint) * z.abs()).sum();
+        let mut dislocation = 0.0;
+        for (index, joint) in self.joints.iter().enumerate() {
+            let mut z = 0.0;
+            self.each_term(joint, |dof, a| z += a * base[dof]);
+            dislocation += root(index) * z.abs();
+        }
         let row = if self.doubled.is_some() { DOUBLED_ROW } else { ROW };
-        // r_i² ≤ K_ii · rᵀ K⁻¹ r: what is left of the energy of the error tells what is left of each row.
-        let unsolved = u.1.as_ref().map_or(0.0, |tail| 2.0 * tail.error.sqrt());
-        let diagonal = self.k.diagonal();
-        let mut rows: Vec<f64> =
-            std::iter::zip(&terms, &diagonal).map(|(terms, k)| row * terms + unsolved * k.sqrt()).collect();
-        let field = std::iter::zip(&terms, &base).map(|(terms, u)| terms * u.abs()).sum::<f64>().sqrt();
+        let mut rows: Vec<f64> = terms.iter().map(|terms| row * terms).collect();
+        if error > 0.0 {
+            // r_i² ≤ K_ii · rᵀ K⁻¹ r: what is left of the energy of the error tells what is left of each row.
+            let unsolved = 2.0 * error.sqrt();
+            std::iter::zip(&mut rows, self.k.diagonal()).for_each(|(row, k)| *row += unsolved * k.sqrt());
+        }
+        let field = std::iter::zip(terms, base).map(|(terms, u)| terms * u.abs()).sum::<f64>().sqrt();
         // Balancing RF on the motions of the kernel spreads its rounding over all joints that feel them, also that of
         // joints that do not: they enter with the rounding of Z, whose columns are of length one.
         let loads: Vec<f64> = (0..self.joints.len())

@@ -23,7 +23,7 @@ use crate::watch::Watch;
 /// Points of a block.
 const BLOCK: usize = 16;
 /// Answers whose equilibrium is checked together.
-const TOGETHER: usize = 8;
+const TOGETHER: usize = 16;
 /// A proof that the answers are unique takes as long as some twenty cold runs: it is looked for in a grid of this many points.
 const MANY: usize = 64;
 
