@@ -187,32 +187,32 @@ impl Factor {
     /// The same for several right sides, which share each look at L.
     pub fn solve_many(&self, b: &mut [Vec<f64>]) {
         let (n, cases) = (self.order(), b.len());
-        let mut x = vec![0.0; n * cases];
-        for (case, b) in b.iter().enumerate() {
-            for (i, b) in b.iter().enumerate() {
-                x[self.position[i] as usize * cases + case] = self.scale[i] * b;
-            }
-        }
+        let mut x = self.side_by_side(b, n);
         self.supernodes.forward(MatMut::from_row_major_slice_mut(&mut x, n, cases));
         self.supernodes.backward(MatMut::from_row_major_slice_mut(&mut x, n, cases));
-        for (case, b) in b.iter_mut().enumerate() {
-            for (i, b) in b.iter_mut().enumerate() {
-                *b = self.scale[i] * x[self.position[i] as usize * cases + case];
-            }
+        for i in 0..b.first().map_or(0, Vec::len) {
+            let row = &x[self.position[i] as usize * cases..][..cases];
+            b.iter_mut().zip(row).for_each(|(b, x)| b[i] = self.scale[i] * x);
         }
+    }
+
+    /// Pᵀ S b of every b, as a matrix of so many rows, row by row: the sweeps go down the rows. Where everything is held, b
+    /// lacks the idle unknown, which stays zero.
+    fn side_by_side(&self, b: &[Vec<f64>], rows: usize) -> Vec<f64> {
+        let cases = b.len();
+        let mut x = vec![0.0; rows * cases];
+        for i in 0..b.first().map_or(0, Vec::len) {
+            let row = &mut x[self.position[i] as usize * cases..][..cases];
+            row.iter_mut().zip(b).for_each(|(x, b)| *x = self.scale[i] * b[i]);
+        }
+        x
     }
 
     /// Cᵀ K_m⁻¹ b = L_C L⁻¹ Pᵀ S b for every b, as columns.
     pub fn project(&self, b: &[Vec<f64>]) -> DMatrix<f64> {
         let (n, cases) = (self.order(), b.len());
-        // Row by row: the sweep goes down the rows, and the cases lie side by side.
-        let mut x = vec![0.0; (n + self.joints) * cases];
-        for (case, b) in b.iter().enumerate() {
-            for (i, b) in b.iter().enumerate() {
-                x[self.position[i] as usize * cases + case] = self.scale[i] * b;
-            }
-        }
         let rows = n + self.joints;
+        let mut x = self.side_by_side(b, rows);
         self.supernodes.forward(MatMut::from_row_major_slice_mut(&mut x, rows, cases));
         DMatrix::from_fn(self.joints, cases, |joint, case| -x[(n + joint) * cases + case])
     }
