@@ -3,8 +3,9 @@
 
 use nalgebra::DVector;
 
-use super::assembly::{assemble, main_stiffness, on_joints, on_masters};
+use super::assembly::{assemble_seen, main_stiffness, on_joints, on_masters};
 use super::condense::{amplification, driving_force, loses};
+use super::contrast::Stiffnesses;
 use super::error::MainSystemError;
 use super::factor::Factor;
 use super::kinematics::Kinematics;
@@ -23,7 +24,8 @@ pub struct HeldForces {
 }
 
 impl Kinematics {
-    /// RF of every load case; `None` where joints repeat others, or where f64 may lose too much of it to rounding.
+    /// RF of every load case; `None` where joints repeat others, where there may be motions that the parts do not show,
+    /// or where f64 may lose too much of it to rounding.
     ///
     /// # Errors
     /// An element without shape; too large; out of memory; interrupted.
@@ -33,10 +35,14 @@ impl Kinematics {
         watch: &dyn Watch,
     ) -> Result<Option<Vec<HeldForces>>, MainSystemError> {
         let Outline { dofs, elimination, repeated, f, settled, .. } = self.outline();
-        if !repeated.is_empty() {
+        if !repeated.is_empty() || !self.loose().may_be_all(structure) {
             return Ok(None);
         }
-        let k = assemble(structure, dofs, &|| watch.stop())?;
+        let mut stiffnesses = Stiffnesses::of_springs(structure);
+        let k = assemble_seen(structure, dofs, &|| watch.stop(), |k| stiffnesses.take(k))?;
+        if !self.loose().are_all(structure, &stiffnesses) {
+            return Ok(None);
+        }
         let coordinates: Vec<[f64; 3]> = structure.nodes.iter().map(|node| node.position).collect();
         let node = elimination.nodes(dofs);
         let places = Places { node: &node, coordinates: &coordinates, last: &vec![false; node.len()] };

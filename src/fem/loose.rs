@@ -57,11 +57,15 @@ impl LooseMotions {
     /// many parts connected to one another, no part so much softer than another, and no side so short beside the whole,
     /// that only the numbers could tell whether it holds.
     pub fn are_all(&self, structure: &Structure, stiffnesses: &Stiffnesses) -> bool {
+        self.may_be_all(structure) && stiffnesses.contrast() <= CONTRAST
+    }
+
+    /// The part of [`LooseMotions::are_all`] for which no stiffness need be known.
+    pub fn may_be_all(&self, structure: &Structure) -> bool {
         let wide = structure.elements.iter().all(|element| element.nodes.len() > 2);
         self.complete
             && wide
             && structure.superelement.is_none()
-            && stiffnesses.contrast() <= CONTRAST
             && shortest_side(structure) >= SHORT * structure.extent().into_iter().fold(0.0, f64::max)
     }
 }

@@ -47,14 +47,13 @@ fn look_within(time: Duration, scenario: &Scenario, watch: &dyn Watch) -> Result
         _ => None,
     };
     let Some(structure) = large else { return by_numbers(scenario, watch) };
-    let kinematics = Kinematics::new(structure, &joints(&structure.pairs), watch)
-        .map_err(|error| main_system_problem(scenario, structure, error))?;
-    if kinematics.is_complete() && surely_pressed(scenario, structure, &kinematics) {
+    let placed = |error| main_system_problem(scenario, structure, error);
+    let kinematics = Kinematics::new(structure, &joints(&structure.pairs), watch).map_err(placed)?;
+    if surely_pressed(scenario, structure, &kinematics) && kinematics.is_complete(structure, watch).map_err(placed)? {
         return Ok(by_parts(scenario, structure, &kinematics, None));
     }
     let budget = Budget::new(watch, time);
-    if kinematics.is_complete()
-        && let Ok(Some(held)) = kinematics.held_forces(structure, &budget)
+    if let Ok(Some(held)) = kinematics.held_forces(structure, &budget)
         && clearly_pressed(scenario, structure, &held)
     {
         return Ok(by_parts(scenario, structure, &kinematics, None));

@@ -35,7 +35,7 @@ const LONG: Duration = Duration::from_secs(3600);
 fn is_decided_by_parts(scenario: &Scenario) -> bool {
     let Source::Structure(structure) = &scenario.source else { panic!("a structure") };
     let kinematics = Kinematics::new(structure, &joints(&structure.pairs), &Quiet).unwrap();
-    kinematics.is_complete() && surely_pressed(scenario, structure, &kinematics)
+    surely_pressed(scenario, structure, &kinematics) && kinematics.is_complete(structure, &Quiet).unwrap()
 }
 
 #[test]
