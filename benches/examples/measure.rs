@@ -5,8 +5,7 @@
 //! measure warm PAIRS F T REPETITIONS                      cold, load changed, friction changed
 //! measure resolve NX NY REPETITIONS                       a load inside the model moved, a size moved
 //! measure trace PAIRS F T                                 the pull from 0 to T: cost of a breakpoint, of a pivot
-//! measure sweep PAIRS F T POINTS THREADS [stands]         pulls up to T, cold and one following another; `stands`:
-//!                                                         springs hold the upper plate: answers can be unique
+//! measure sweep PAIRS F T POINTS THREADS [stands]         pulls up to T; `stands`: springs hold the upper plate
 //! measure condense NX NY WIDTH HEIGHT CASES [plain]       two plates; `plain`: also faer's own factorization
 //! measure schur NX NY WIDTH HEIGHT FOLDER                 exports K_m and C of the same to FOLDER, and condenses it
 //! measure space NX NY NZ FACETS [FOLDER]                  bricks on a plane: condensed (K_m and C to FOLDER),
@@ -42,9 +41,8 @@ use stickslip::model::scenario::{Scenario, Source};
 use stickslip::model::structure::Structure;
 use stickslip::path::grid::{Axis, Grid, Shard};
 use stickslip::path::load::{self, LoadReach};
-use stickslip::path::sweep::{Following, Format, Sweep};
+use stickslip::path::sweep::{Format, Sweep};
 use stickslip::solve::engines::run_scheme;
-use stickslip::solve::line::Proofs;
 use stickslip::solve::prepare;
 use stickslip::watch::Quiet;
 
@@ -238,7 +236,7 @@ fn trace(arguments: &[String]) -> Result<Value, Failure> {
     }))
 }
 
-/// A sweep over the pull: cold, and neighbours following one another where that is proved; in turns.
+/// A sweep over the pull.
 fn sweep(arguments: &[String]) -> Result<Value, Failure> {
     let pairs: usize = number(arguments, 0, "PAIRS")?;
     let (friction, traction): (f64, f64) = (number(arguments, 1, "F")?, number(arguments, 2, "T")?);
@@ -253,23 +251,16 @@ fn sweep(arguments: &[String]) -> Result<Value, Failure> {
     let case = prepared.case(&scenario, &values);
     let sweep = Sweep { case, grid: &grid, shard: Shard::WHOLE, format: Format::Csv, quantities: &[] };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let (mut clocks, mut cpus) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
+    let (mut clocks, mut cpus) = (Vec::new(), Vec::new());
     for _ in 0..3 {
-        for (turn, following) in [Following::Never, Following::Always].into_iter().enumerate() {
-            let (clock, cpu, done) =
-                computed(|| pool.install(|| sweep.run_by(following, 0, &mut std::io::sink(), &Quiet)));
-            done?;
-            clocks[turn].push(clock / points as f64);
-            cpus[turn].push(cpu / points as f64);
-        }
+        let (clock, cpu, done) = computed(|| pool.install(|| sweep.run(0, &mut std::io::sink(), &Quiet)));
+        done?;
+        clocks.push(clock / points as f64);
+        cpus.push(cpu / points as f64);
     }
-    let [cold, following] = cpus.map(median);
-    let [cold_clock, following_clock] = clocks.map(median);
-    let proofs = Proofs::of(&prepared).ok_or("no pairs")?;
-    let (_, proof, unique) = computed(|| case.is_unique(&proofs));
+    let (clock, processor) = (median(clocks), median(cpus));
     Ok(json!({
-        "pairs": pairs, "f": friction, "points": points, "threads": threads, "unique": unique, "proof": proof,
-        "cold": cold, "following": following, "cold_clock": cold_clock, "following_clock": following_clock,
+        "pairs": pairs, "f": friction, "points": points, "threads": threads, "clock": clock, "processor": processor,
     }))
 }
 

@@ -12,4 +12,3 @@ pub mod record;
 pub mod rounding;
 pub mod same;
 pub mod stress;
-pub mod strict;

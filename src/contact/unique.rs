@@ -9,12 +9,9 @@
 //!   vᵀ P R v  ≤  Σ f_i |(R v)_n,i| |v_τ,i|  ≤  ½ Σ f_i (α (R v)_n,i² + v_τ,i² / α)
 //! ```
 //! Where the matrix A = ½ (P R + R P) − ½ R_n F R_nᵀ α − ½ F / α of the difference of both sides is positive definite,
-//! but for the kernel of R, there is no such v outside the kernel: the forces are the only ones, and so is the motion
-//! wherever joints that are held let no motion of the kernel through ([`is_determined`]). Everything is scaled to a
+//! but for the kernel of R, there is no such v outside the kernel: the forces are the only ones. Everything is scaled to a
 //! unit diagonal of R before; s and α are chosen so that the bound is large. A larger weight on the normals helps the
 //! more, the less tangential and normal joints feel one another (R_nτ).
-
-use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -26,24 +23,9 @@ use stickslip_numerics::decompositions::Cholesky;
 const WEIGHTS: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0];
 /// Steps of the power iteration for the eigenvalues from which the weight is chosen; nothing is proved by them.
 const STEPS: usize = 12;
-/// Halvings between a multiple of the friction that is proved and one that is not.
-const HALVINGS: usize = 4;
 /// A matrix of unit size whose Cholesky factorization works after (this · n² ε) was taken from its diagonal is positive
 /// definite (Rump, *Verification of positive definiteness*, 2006), the rounding of its entries included.
 const ROUNDING: f64 = 8.0;
-
-/// What has been proved of a system, friction by friction.
-#[derive(Clone, Debug)]
-pub struct Uniqueness {
-    system: Arc<ContactSystem>,
-    /// `None` before it is asked for, or where no weight works.
-    form: Option<Form>,
-    asked: bool,
-    /// Frictions of all pairs under which, and under all smaller ones, there is at most one answer.
-    proved: Vec<Vec<f64>>,
-    /// Frictions under which, and under all larger ones, nothing is proved.
-    open: Vec<Vec<f64>>,
-}
 
 /// R of unit diagonal with the best weight.
 #[derive(Clone, Debug)]
@@ -58,49 +40,14 @@ struct Form {
     alpha: f64,
 }
 
-impl Uniqueness {
-    /// Nothing is asked for yet.
-    pub fn of(system: &Arc<ContactSystem>) -> Uniqueness {
-        Uniqueness { system: Arc::clone(system), form: None, asked: false, proved: Vec::new(), open: Vec::new() }
+/// Whether the problem, whatever its load and its gaps, is proved to have at most one state of forces.
+pub fn is_unique(problem: &ContactProblem) -> bool {
+    let system = &*problem.system;
+    if system.force_form.is_some() {
+        return false;
     }
-
-    /// Whether the problem, whatever its load and its gaps, is proved to have at most one state of forces.
-    pub fn holds(&mut self, problem: &ContactProblem) -> bool {
-        if !Arc::ptr_eq(&self.system, &problem.system) || self.system.force_form.is_some() {
-            return false;
-        }
-        let frictions = problem.frictions();
-        let within = |small: &[f64], large: &[f64]| small.iter().zip(large).all(|(small, large)| small <= large);
-        if self.proved.iter().any(|proved| within(&frictions, proved)) {
-            return true;
-        }
-        if self.open.iter().any(|open| within(open, &frictions)) {
-            return false;
-        }
-        if !std::mem::replace(&mut self.asked, true) {
-            self.form = Form::of(&self.system, &frictions);
-        }
-        let times = |factor: f64| frictions.iter().map(|f| factor * f).collect::<Vec<f64>>();
-        let Some(form) = self.form.as_ref().filter(|form| form.proves(&self.system, &frictions)) else {
-            self.open.push(frictions);
-            return false;
-        };
-        // A sweep asks for more and more friction: the bound in this direction, so that most questions are answered by
-        // it.
-        let (mut proved, mut open) = (1.0, 2.0);
-        while frictions.iter().any(|f| *f > 0.0) && open < 64.0 && form.proves(&self.system, &times(open)) {
-            (proved, open) = (open, 2.0 * open);
-        }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (proved + open);
-            if form.proves(&self.system, &times(middle)) { proved = middle } else { open = middle }
-        }
-        self.proved.push(times(proved));
-        if frictions.iter().any(|f| *f > 0.0) {
-            self.open.push(times(open));
-        }
-        true
-    }
+    let frictions = problem.frictions();
+    Form::of(system, &frictions).is_some_and(|form| form.proves(system, &frictions))
 }
 
 impl Form {
@@ -216,29 +163,11 @@ impl Form {
     }
 }
 
-/// Whether no motion of the kernel is left to the joints that are not `held`: their motion is the only one, too.
-pub fn is_determined(system: &ContactSystem, held: &dyn Fn(usize) -> bool) -> bool {
-    let motions = system.kernel.ncols();
-    if motions == 0 {
-        return true;
-    }
-    let rows: Vec<usize> = (0..system.joint_count()).filter(|&joint| held(joint)).collect();
-    let gram = DMatrix::from_fn(motions, motions, |a, b| {
-        rows.iter().map(|&row| system.kernel[(row, a)] * system.kernel[(row, b)]).sum::<f64>()
-    });
-    // The columns are of length one: far above rounding.
-    gram.symmetric_eigenvalues().min() > 1e-10
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::contact::full_lcp::tests::{coulomb, plain};
     use crate::contact::law::PairLaw;
-
-    fn holds(problem: &ContactProblem) -> bool {
-        Uniqueness::of(&problem.system).holds(problem)
-    }
 
     /// One pair: the answer is unique for every load just where f < R_ττ / |R_nτ| (Klarbring 1990). Nothing is claimed
     /// beyond.
@@ -250,7 +179,7 @@ mod tests {
             let mut largest = 0.0;
             for step in 1..80 {
                 let f = 0.025 * f64::from(step) * critical;
-                if holds(&plain(&system, f, &[1.0, 0.0])) {
+                if is_unique(&plain(&system, f, &[1.0, 0.0])) {
                     largest = f64::max(largest, f);
                 }
             }
@@ -269,16 +198,15 @@ mod tests {
         };
         let r = DMatrix::from_fn(8, 8, |i, j| if (i < 4) == (j < 4) { chain(i % 4, j % 4) } else { 0.0 });
         let problem = plain(&coulomb(r), 2.0, &[1.0; 8]);
-        let mut known = Uniqueness::of(&problem.system);
-        assert!(known.holds(&problem));
+        assert!(is_unique(&problem));
         let less = ContactProblem { laws: vec![PairLaw::rubbing(0.3, 0.0, 0.0); 4], ..problem };
-        assert!(known.holds(&less));
+        assert!(is_unique(&less));
         // Without friction the kernel does no harm to the forces.
         let mut free = DMatrix::identity(4, 4);
         (free[(0, 1)], free[(1, 0)]) = (-1.0, -1.0);
         let mut system = coulomb(free);
         system.kernel = DMatrix::from_column_slice(4, 1, &[0.5_f64.sqrt(), 0.5_f64.sqrt(), 0.0, 0.0]);
-        assert!(holds(&plain(&system, 0.0, &[1.0; 4])));
+        assert!(is_unique(&plain(&system, 0.0, &[1.0; 4])));
         // Both pairs slip freely along the kernel: nothing bounds the slip that friction turns into pressure.
         let mut slides = system.clone();
         slides.kernel = DMatrix::from_column_slice(4, 1, &[0.0, 0.0, 0.5_f64.sqrt(), 0.5_f64.sqrt()]);
@@ -287,7 +215,6 @@ mod tests {
             4,
             &[1.0, 0.0, 0.1, -0.1, 0.0, 1.0, 0.1, -0.1, 0.1, 0.1, 1.0, -1.0, -0.1, -0.1, -1.0, 1.0],
         );
-        assert!(!holds(&plain(&slides, 0.01, &[1.0; 4])));
-        assert!(is_determined(&system, &|joint| joint == 0) && !is_determined(&system, &|joint| joint > 1));
+        assert!(!is_unique(&plain(&slides, 0.01, &[1.0; 4])));
     }
 }

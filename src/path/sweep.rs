@@ -1,5 +1,5 @@
 //! A sweep: the answer at every point of a grid, one row each, in the order of the grid whatever the number of threads.
-//! Each row has what a cold run finds at its point, whichever way it was found ([`super::sweep_points`]).
+//! Each row has what a cold run finds at its point ([`super::sweep_points`]).
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -21,17 +21,6 @@ pub enum Format {
     Csv,
     /// A header object, then an object for each row, one a line.
     Json,
-}
-
-/// Whether points follow one another where that is proved to lead to the answer of a cold run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Following {
-    /// In large models and grids of many points.
-    WhereItPays,
-    /// In all.
-    Always,
-    /// In none.
-    Never,
 }
 
 /// What is swept.

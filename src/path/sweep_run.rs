@@ -6,12 +6,13 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::sweep::{Following, Row, Sweep};
-use super::sweep_points::Points;
+use super::sweep::{Row, Sweep};
 use crate::watch::{StopOnly, Watch};
 
 /// Points that are solved before they are written.
 const CHUNK: usize = 256;
+/// Points whose equilibrium is looked at together.
+const BLOCK: usize = 16;
 
 /// What was done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,21 +41,6 @@ impl Sweep<'_> {
     /// # Errors
     /// Where `out` cannot be written.
     pub fn run(&self, found: usize, out: &mut dyn Write, watch: &dyn Watch) -> std::io::Result<Done> {
-        self.run_by(Following::WhereItPays, found, out, watch)
-    }
-
-    /// The same, points following one another or not as asked for.
-    ///
-    /// # Errors
-    /// As [`Sweep::run`].
-    pub fn run_by(
-        &self,
-        following: Following,
-        found: usize,
-        out: &mut dyn Write,
-        watch: &dyn Watch,
-    ) -> std::io::Result<Done> {
-        let solver = Points::new(self, following);
         let points = self.shard.points(self.grid.len());
         let mut done = Done { written: 0, found, total: points.len(), answers: 0 };
         let hash = self.header().hash;
@@ -68,14 +54,15 @@ impl Sweep<'_> {
             let end = (next + CHUNK).min(points.end);
             let stop_only = StopOnly(watch);
             let solved = AtomicUsize::new(done.found + done.written);
-            let rows: Vec<Vec<Option<Row>>> = solver
-                .blocks(next..end)
+            let rows: Vec<Vec<Option<Row>>> = (next..end)
                 .into_par_iter()
-                .map(|block| {
+                .step_by(BLOCK)
+                .map(|first| {
+                    let block = first..(first + BLOCK).min(end);
                     if watch.stop() {
                         return vec![None];
                     }
-                    let found = solver.solve(block.clone(), &stop_only);
+                    let found = self.solve(block.clone(), &stop_only);
                     let ready = solved.fetch_add(block.len(), Ordering::Relaxed) + block.len();
                     told(ready);
                     block.zip(found).map(|(index, found)| self.row(index, found, &hash)).collect()

@@ -9,9 +9,7 @@ use std::sync::{Arc, Mutex};
 use nalgebra::DVector;
 
 use crate::contact::problem::ContactProblem;
-use crate::contact::system::ContactSystem;
 use crate::contact::written::ContactLcp;
-use crate::lcp::basis::Basis;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
@@ -60,16 +58,6 @@ impl WarmStart {
     /// Refines what is kept from the data, where its answer was not good enough; then [`WarmStart::follow`] again.
     pub fn refine(&mut self) {
         self.engine.refine();
-    }
-
-    /// The system whose answers are followed.
-    pub(super) fn system(&self) -> &Arc<ContactSystem> {
-        &self.problem.system
-    }
-
-    /// The scheme of the answer reached last.
-    pub(super) fn basis(&self) -> Basis {
-        self.engine.basis()
     }
 
     /// The LCP whose matrix can be shared by others of the same system.

@@ -27,6 +27,6 @@ mod session;
 mod stages;
 mod stages_in_space;
 mod sweep;
-mod sweep_following;
+mod sweep_points;
 mod trace_in_space;
 mod two_nodes;

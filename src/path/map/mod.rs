@@ -27,7 +27,6 @@ use crate::model::rules::Rules;
 use crate::model::uses::Redone;
 use crate::solve::Case;
 use crate::solve::error::QuestionError;
-use crate::solve::line::Proofs;
 use crate::watch::StopOnly;
 
 /// Other answers are looked for in maps of at most this many pairs …
@@ -189,8 +188,7 @@ fn others(case: Case<'_>, axes: &[Axis; 2]) -> Result<Others, PathError> {
     let most = (0..4).find(|k| frictions.iter().all(|other| exceeds(&frictions[*k], other)));
     let Some(most) = most.filter(|_| is_stiff && !bends) else { return Ok(otherwise) };
     let there = &corners[most];
-    let proved = Proofs::of(&there.prepared).is_some_and(|proofs| there.case(case).is_unique(&proofs));
-    Ok(if proved { Others::None } else { otherwise })
+    Ok(if there.case(case).is_unique() { Others::None } else { otherwise })
 }
 
 /// Whether the friction of a pair depends on a parameter in another way than a + b θ.

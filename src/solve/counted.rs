@@ -1,11 +1,7 @@
-//! Answers at one set of numbers after another, for sweeps: each is what a cold run finds, character by character, taken from
-//! the one before it where that is proved to lead to the same.
-//!
-//! The proof has two parts: under this friction the system has one state of forces at most, whatever its load
-//! ([`Uniqueness`]); and the state reached lies clear of every change of scheme, so that a cold run ends in the same scheme.
-//! From there on both compute the same numbers.
+//! Answers of which only the joints are asked for, as sweeps, limits and maps ask for them at many sets of numbers: of a
+//! structure the equilibrium of several is checked together.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use super::case::Case;
 use super::cold::Extent;
@@ -14,38 +10,20 @@ use super::known_collapses::KnownCollapses;
 use super::prepared::{Geometry, Prepared};
 use super::problem::{contact_problem, factors};
 use super::state::{RunData, Solved};
-use super::warm::WarmStart;
-use crate::answer::pairs::{JointState, joint_state};
-use crate::answer::record::{Answer, OutcomeKind, Start};
-use crate::answer::strict::is_strict;
-use crate::contact::lcp::contact_lcp_like;
+use crate::answer::pairs::JointState;
+use crate::answer::record::{Answer, OutcomeKind};
 use crate::contact::problem::ContactProblem;
-use crate::contact::unique::Uniqueness;
+use crate::contact::unique::is_unique;
 use crate::fem::BalancedState;
-use crate::lcp::basis_solution::vertex;
 use crate::model::rules::Engine;
-
-/// What has been proved of one system; shared by all lines of a sweep.
-#[derive(Debug)]
-pub struct Proofs(Mutex<Uniqueness>);
-
-impl Proofs {
-    /// Nothing yet; `None` for a bare LCP.
-    pub fn of(prepared: &Prepared) -> Option<Proofs> {
-        prepared.system().map(|system| Proofs(Mutex::new(Uniqueness::of(system))))
-    }
-}
 
 impl Case<'_> {
     /// Whether it is proved that there is at most one answer here, whatever the load.
-    pub fn is_unique(self, proofs: &Proofs) -> bool {
+    pub fn is_unique(self) -> bool {
         let usual = self.rules.are_default() && self.rules.engine == Engine::Scheme;
         let Some(system) = self.prepared.system().filter(|_| usual) else { return false };
-        if self.scenario.law_refusal(self.values).is_some() {
-            return false;
-        }
-        let problem = contact_problem(system, &factors(self.prepared, self.values), self.values);
-        proofs.0.lock().unwrap_or_else(PoisonError::into_inner).holds(&problem)
+        let problem = || contact_problem(system, &factors(self.prepared, self.values), self.values);
+        self.scenario.law_refusal(self.values).is_none() && is_unique(&problem())
     }
 
     /// Friction of every pair; none of a bare LCP.
@@ -96,51 +74,7 @@ impl Case<'_> {
         };
         Ok(solved.if_answer(self.rules.cone))
     }
-
-    /// As [`Case::solve_counted`], for values at which [`Case::is_unique`] holds: from the previous answer on this line
-    /// if that leads there.
-    ///
-    /// # Errors
-    /// As [`Case::solve`].
-    pub fn solve_next(self, line: &mut Line) -> Result<Solved, SolveError> {
-        // Taken out, so that nothing half-done stays behind where the path fails.
-        if let Some(mut kept) = line.0.take()
-            && let Some(solved) = self.same_as_cold(&mut kept)
-        {
-            line.0 = Some(kept);
-            return Ok(solved);
-        }
-        let solved = self.solve_counted()?;
-        line.0 = solved.warm.as_ref().and_then(|slot| slot.lock().unwrap_or_else(PoisonError::into_inner).take());
-        Ok(solved)
-    }
-
-    /// What a cold run finds, from the kept answer; `None` where that is not certain.
-    fn same_as_cold(self, kept: &mut WarmStart) -> Option<Solved> {
-        let Case { prepared, values, rules, watch, .. } = self;
-        let system = prepared.system()?;
-        let problem = contact_problem(system, &factors(prepared, values), values);
-        if !Arc::ptr_eq(system, kept.system()) {
-            return None;
-        }
-        let changes = kept.follow(&problem, watch)?.pivots;
-        let basis = kept.basis();
-        if basis.z.is_empty() {
-            // Here a cold run ends at once.
-            return None;
-        }
-        let contact = contact_lcp_like(Some(kept.contact()), &problem, rules.covering).ok()?;
-        let point = vertex(&contact.lcp, &basis)?;
-        let mut solved = prepared.answer_at(&problem, contact, point, rules.into(), Extent::Counted).ok()?;
-        solved.answer.start = Start::Warm { changes };
-        let strict = solved.answer.is_answer() && is_strict(&problem, &solved.joints()?);
-        strict.then_some(solved)
-    }
 }
-
-/// The answer before, in a dictionary.
-#[derive(Debug, Default)]
-pub struct Line(Option<WarmStart>);
 
 /// An answer of a structure whose equilibrium is still to be checked.
 #[derive(Debug)]
@@ -151,15 +85,6 @@ pub struct Unbalanced {
 }
 
 impl Solved {
-    /// The joints of an answer.
-    fn joints(&self) -> Option<JointState> {
-        match (&self.rest, &self.run) {
-            (Some(rest), _) => Some(rest.joints.clone()),
-            (None, RunData::Contact { contact, problem, last, .. }) => Some(joint_state(problem, contact, last)),
-            (None, RunData::Plain { .. }) => None,
-        }
-    }
-
     /// What the check of equilibrium needs, where that is still to be made.
     fn unbalanced(&self) -> Option<Unbalanced> {
         match (&self.rest, &self.run) {

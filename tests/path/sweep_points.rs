@@ -1,13 +1,12 @@
-//! Points of a sweep that follow one another: to the last bit what cold runs find, wherever a shard begins.
+//! Points of a sweep: what runs of their own find, wherever a shard begins; and where answers are proved to be unique.
 
 use nalgebra::DMatrix;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
-use stickslip::answer::record::{Answer, OutcomeKind, Start};
 use stickslip::model::load::load_text;
-use stickslip::path::sweep::{Following, Format};
-use stickslip::solve::line::{Line, Proofs, Unbalanced};
+use stickslip::path::sweep::Format;
+use stickslip::solve::counted::Unbalanced;
 use stickslip::watch::Quiet;
 
 use super::sweep::Case;
@@ -80,47 +79,6 @@ fn random(kind: Kind, m: usize, rng: &mut ChaCha8Rng, axes: &[&str]) -> Case {
     Case::of(scenario, axes)
 }
 
-fn same(found: &Answer, cold: &Answer, place: &str) {
-    assert_eq!(found.outcome, cold.outcome, "{place}");
-    // PartialEq of f64: to the last bit, but for the sign of zero.
-    assert_eq!(found.pairs, cold.pairs, "{place}");
-}
-
-#[test]
-fn answers_that_follow_one_another_are_those_of_cold_runs_to_the_last_bit() {
-    let mut rng = ChaCha8Rng::seed_from_u64(16);
-    let (mut followed, mut proved, mut all) = ([0; 4], [0; 4], 0);
-    for number in 0..72 {
-        let kind = KINDS[number % 4];
-        let case = random(kind, 1 + number % 9, &mut rng, &["T=0"]);
-        let here = case.prepared.case(&case.scenario, &case.values);
-        let proofs = Proofs::of(&case.prepared).expect("pairs");
-        for f in [0.05, 0.3, 6.0] {
-            let mut line = Line::default();
-            for step in 0..24 {
-                let mut values = case.values.clone();
-                values.insert("f".to_owned(), if step < 16 { f } else { f * (1.0 + 0.01 * f64::from(step - 16)) });
-                values.insert("T".to_owned(), f64::from(step.min(18)) * 0.2);
-                let there = stickslip::solve::Case { values: &values, ..here };
-                let cold = there.solve().expect("runs");
-                let place = format!("{kind:?} {number}, f {f}, step {step}");
-                all += 1;
-                if !there.is_unique(&proofs) {
-                    continue;
-                }
-                proved[number % 4] += 1;
-                assert!(cold.answer.outcome != OutcomeKind::Ray || kind == Kind::Loose, "{place}");
-                let found = there.solve_next(&mut line).expect("runs");
-                same(&found.answer, &cold.answer, &place);
-                followed[number % 4] += usize::from(matches!(found.answer.start, Start::Warm { .. }));
-            }
-        }
-    }
-    // Each kind is followed; where there may be several answers, not all are claimed to be unique.
-    assert!(followed.iter().take(3).all(|followed| *followed > 150), "{followed:?} {proved:?} of {all}");
-    assert!(proved[3] < all / 5, "{proved:?} of {all}");
-}
-
 /// Where it is said that there is one answer at most, going through all working schemes finds no second one.
 #[test]
 fn where_answers_are_proved_to_be_unique_there_is_no_second() {
@@ -129,13 +87,12 @@ fn where_answers_are_proved_to_be_unique_there_is_no_second() {
     for number in 0..120 {
         let kind = KINDS[number % 4];
         let case = random(kind, 1 + number % 3, &mut rng, &["T=0"]);
-        let proofs = Proofs::of(&case.prepared).expect("pairs");
         for f in [0.1, 0.6, 2.5, 10.0] {
             for t in [-4.0, -1.5, 0.4, 2.0, 5.0] {
                 let mut values = case.values.clone();
                 values.insert("f".to_owned(), f);
                 values.insert("T".to_owned(), t);
-                let unique = case.prepared.case(&case.scenario, &values).is_unique(&proofs);
+                let unique = case.prepared.case(&case.scenario, &values).is_unique();
                 let found = case.prepared.all_answers(&values, case.scenario.rules, &Quiet).expect("few pairs");
                 several += usize::from(found.answers.len() > 1);
                 proved += usize::from(unique);
@@ -150,41 +107,27 @@ fn where_answers_are_proved_to_be_unique_there_is_no_second() {
     assert!(proved > 400 && several > 10, "{proved} {several}");
 }
 
-/// The file without the columns that tell how a row was found.
-fn told(text: &[u8]) -> Vec<Vec<String>> {
-    let text = std::str::from_utf8(text).expect("text");
-    let rows = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
-    rows.map(|mut row| {
-        row.pop();
-        row.remove(5);
-        row
-    })
-    .collect()
-}
-
-fn bytes(case: &Case, shard: &str, following: Following) -> Vec<u8> {
+fn bytes(case: &Case, shard: &str) -> Vec<u8> {
     let mut out = Vec::new();
-    let done = case.sweep(shard, Format::Csv).run_by(following, 0, &mut out, &Quiet).expect("a vector takes all");
+    let done = case.sweep(shard, Format::Csv).run(0, &mut out, &Quiet).expect("a vector takes all");
     assert!(done.is_complete());
     out
 }
 
 #[test]
-fn sweeps_that_follow_are_the_same_on_any_threads_and_shards() {
+fn sweeps_are_the_same_on_any_threads_and_shards() {
     let mut rng = ChaCha8Rng::seed_from_u64(18);
     for (number, kind) in KINDS.into_iter().cycle().take(12).enumerate() {
         let axes: &[&str] =
             if number % 2 == 0 { &["f=0.05..0.6/3", "T=-1..3/37"] } else { &["T=-1..3/5", "f=0.05..0.6/29"] };
         let case = random(kind, 2 + number % 5, &mut rng, axes);
-        let whole = bytes(&case, "1/1", Following::Always);
-        let cold = bytes(&case, "1/1", Following::Never);
-        assert_eq!(told(&whole), told(&cold), "{kind:?} {number}");
+        let whole = bytes(&case, "1/1");
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            assert_eq!(pool.install(|| bytes(&case, "1/1", Following::Always)), whole);
+            assert_eq!(pool.install(|| bytes(&case, "1/1")), whole);
         }
         for shards in [2, 5, 23] {
-            let parts = (1..=shards).flat_map(|k| bytes(&case, &format!("{k}/{shards}"), Following::Always));
+            let parts = (1..=shards).flat_map(|k| bytes(&case, &format!("{k}/{shards}")));
             assert!(parts.eq(whole.iter().copied()), "{kind:?} {number} in {shards}");
         }
         // A file that is continued anywhere.
@@ -192,7 +135,7 @@ fn sweeps_that_follow_are_the_same_on_any_threads_and_shards() {
         let lines: Vec<&[u8]> = whole.split_inclusive(|byte| *byte == b'\n').collect();
         for found in [1, 17, 40, 63] {
             let mut rest = Vec::new();
-            sweep.run_by(Following::Always, found, &mut rest, &Quiet).expect("a vector takes all");
+            sweep.run(found, &mut rest, &Quiet).expect("a vector takes all");
             assert_eq!(rest, lines[found..].concat());
         }
     }
@@ -211,14 +154,13 @@ const BLOCKS: &str = r#"{ "format": "stickslip/1", "title": "blocks", "parameter
                "p": { "factor": "T", "items": [ { "traction": { "edge": "b.left", "value": [1, 0.7] } } ] } } }"#;
 
 #[test]
-fn of_a_structure_every_row_is_that_of_a_cold_run_with_its_whole_check() {
+fn of_a_structure_every_row_is_that_of_a_run_of_its_own_with_its_whole_check() {
     let scenario = || load_text("blocks", BLOCKS, None).unwrap_or_else(|error| panic!("{error}"));
     for axes in [&["f=0.02..0.4/3", "T=0..120/33"][..], &["T=40..80/2", "f=0.01..0.5/21"]] {
         let case = Case::of(scenario(), axes);
-        let (followed, cold) = (bytes(&case, "1/1", Following::Always), bytes(&case, "1/1", Following::Never));
-        assert_eq!(told(&followed), told(&cold));
-        // By its own run, the check with the equilibrium of all nodes included.
-        for (index, row) in told(&cold).iter().enumerate() {
+        let file = String::from_utf8(bytes(&case, "1/1")).expect("text");
+        for (index, row) in file.lines().enumerate() {
+            let row: Vec<&str> = row.split(',').collect();
             let point = case.grid.point(index);
             let mut values = case.values.clone();
             case.grid.axes.iter().zip(point).for_each(|(axis, value)| {
@@ -227,8 +169,9 @@ fn of_a_structure_every_row_is_that_of_a_cold_run_with_its_whole_check() {
             let solved = case.prepared.case(&case.scenario, &values).solve().expect("runs");
             assert!(solved.answer.check.passed && solved.answer.check.equilibrium.is_some());
             assert_eq!(row[2], json!(solved.answer.outcome).as_str().expect("a word"));
+            assert_eq!(row[5], solved.answer.pivot_count.to_string());
             let largest = solved.answer.pairs.iter().map(|pair| pair.x_n.abs()).fold(0.0, f64::max);
-            assert_eq!(row[14], json!(largest).to_string(), "{row:?}");
+            assert_eq!(row[15], json!(largest).to_string(), "{row:?}");
         }
     }
 }
