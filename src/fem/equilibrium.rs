@@ -111,13 +111,12 @@ impl MainSystem {
     /// shown: 1e-9 or less where the residuals are. Where rounding alone explains what is left at every node, the
     /// forces that meet there need not be known; elsewhere both are computed as for an answer that is shown.
     pub fn equilibrium_bounds(&self, structure: &Structure, states: &[BalancedState<'_>]) -> Vec<f64> {
-        let whole = |state: &BalancedState<'_>| {
-            let u = self.displacements(state.factors, &state.dislocation);
-            self.compatibility_residual(&u, &state.dislocation, &state.terms)
-                + self.equilibrium_residual(structure, &u, state.force, state.factors)
-        };
         if self.doubled.is_some() {
-            return states.iter().map(whole).collect();
+            let bound = |state: &BalancedState<'_>| {
+                let u = self.displacements(state.factors, &state.dislocation);
+                self.residuals(structure, state, &u)
+            };
+            return states.iter().map(bound).collect();
         }
         let independent: Vec<(&[f64], DVector<f64>)> =
             states.iter().map(|state| (state.factors, self.of_independent(&state.dislocation))).collect();
@@ -125,15 +124,33 @@ impl MainSystem {
         let mut bounds = Vec::with_capacity(states.len());
         for (states, found) in states.chunks(TOGETHER).zip(found.chunks(TOGETHER)) {
             let summed = match found {
-                [u] => self.forces_with_terms::<1>(std::slice::from_ref(u)),
+                [_] => self.forces_with_terms::<1>(found),
                 _ => self.forces_with_terms::<TOGETHER>(found),
             };
             bounds.extend(states.iter().zip(found).zip(summed).map(|((state, u), summed)| {
                 let bound = self.unexplained(state, u, summed);
-                if bound <= TOLERANCE { bound } else { whole(state) }
+                if bound <= TOLERANCE { bound } else { self.refined_bound(structure, state) }
             }));
         }
         bounds
+    }
+
+    /// The same of one state from refined displacements, and only if rounding does not explain what they leave either,
+    /// from the forces that meet.
+    fn refined_bound(&self, structure: &Structure, state: &BalancedState<'_>) -> f64 {
+        let u = [self.plain_displacements(state.factors, &self.of_independent(&state.dislocation))];
+        let summed = self.forces_with_terms::<1>(&u).swap_remove(0);
+        let bound = self.unexplained(state, &u[0], summed);
+        if bound <= TOLERANCE {
+            return bound;
+        }
+        self.residuals(structure, state, &Displacements::from(self.dofs.scatter(&u[0])))
+    }
+
+    /// The residuals of compatibility and equilibrium as for an answer that is shown.
+    fn residuals(&self, structure: &Structure, state: &BalancedState<'_>, u: &Displacements) -> f64 {
+        self.compatibility_residual(u, &state.dislocation, &state.terms)
+            + self.equilibrium_residual(structure, u, state.force, state.factors)
     }
 
     /// K u and Σ_k |K_ik||u_k| of each of up to N displacements of the base dofs.
