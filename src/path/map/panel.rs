@@ -27,9 +27,8 @@ const HALVINGS: usize = 8;
 const NESTED: usize = 64;
 /// Most lines of one map.
 const LINES: usize = 20_000;
-/// The same where each line is a row of answers, not an exact path: minutes in place of hours, and areas drawn by as many lines
-/// are good to some 1e-4.
-const LINES_IN_STEPS: usize = 1_000;
+/// The same where each line is a row of answers, not an exact path: minutes in place of an hour.
+const LINES_IN_STEPS: usize = 3_000;
 
 /// Nodes of the Gauss–Kronrod rule of 15 places on [0, 1] (its lower half and the middle); every second belongs to
 /// Gauss's rule of 7. Piessens et al., QUADPACK (1983).
