@@ -3,16 +3,27 @@
 use nalgebra::DVector;
 
 use super::cone::{
-    ConeAnswer, ConeCheck, ConeFailure, ConePair, ConeProblem, MixedProblem, MixedState, answer_on_cone,
+    ConeAnswer, ConeCheck, ConeFailure, ConePair, ConeProblem, MixedProblem, MixedState, answer_on_cone, kept_on_cone,
 };
 use super::problem::ContactProblem;
 use super::sum::Sum;
 use super::sums::joint_forces;
+use super::system::Yielding;
 use crate::watch::Watch;
 
 /// Largest number of answers in which the multipliers of joints that repeat one another must settle: each gains some
 /// five digits, and only parts that do not fit press on for ever.
 const MULTIPLIERS: usize = 12;
+
+/// What was found of joints that repeat one another.
+enum Found {
+    /// The answer.
+    Last(ConeAnswer),
+    /// The answer where the multipliers settle.
+    OfMultipliers(ConeAnswer),
+    /// One that yields, whose multipliers bring the next one nearer.
+    OnTheWay(ConeAnswer),
+}
 
 /// The parts of a [`ConeProblem`] that are made for it.
 #[derive(Clone, Debug)]
@@ -66,21 +77,50 @@ impl<'a> OnCone<'a> {
                 .map(|found| self.reached(found, start, steps))
                 .filter(|found| found.check.passed)),
         };
+        self.by_multipliers(yielding, start, |problem, from, steps| {
+            let found = match answer_on_cone(problem, from, watch) {
+                Err(failure @ ConeFailure::NotConverged { .. }) => {
+                    return exactly(from, &problem.forces(from), steps)?.map(Found::Last).ok_or(failure);
+                }
+                found => found?,
+            };
+            Ok(match exactly(&found.z, &found.forces, steps + found.steps)? {
+                Some(found) => Found::Last(found),
+                None if exact.is_none() => Found::OfMultipliers(found),
+                None => Found::OnTheWay(found),
+            })
+        })
+    }
+
+    /// The answer on the cone in which just those joints move that move in z, near it; joints that repeat one another by
+    /// multipliers alone.
+    ///
+    /// # Errors
+    /// [`ConeFailure`].
+    pub fn kept(&self, z: &DVector<f64>) -> Result<ConeAnswer, ConeFailure> {
+        match &self.problem.system.yielding {
+            None => kept_on_cone(&self.problem(), z),
+            Some(yielding) => self
+                .by_multipliers(yielding, z, |problem, from, _| Ok(Found::OfMultipliers(kept_on_cone(problem, from)?))),
+        }
+    }
+
+    /// Answers that `find` finds near the one before, after so many steps, each with the multipliers of the one before.
+    fn by_multipliers<F>(&self, yielding: &Yielding, start: &DVector<f64>, find: F) -> Result<ConeAnswer, ConeFailure>
+    where
+        F: Fn(&ConeProblem<'_>, &DVector<f64>, usize) -> Result<Found, ConeFailure>,
+    {
         let stiffness = &self.problem.system.stiffness;
         let (mut now, mut from, mut steps) = (self.clone(), start.clone(), 0);
         let mut before: Option<Vec<Sum>> = None;
         for _ in 0..MULTIPLIERS {
-            let found = match answer_on_cone(&now.problem(), &from, watch) {
-                Err(failure @ ConeFailure::NotConverged { .. }) => {
-                    return exactly(&from, &now.problem().forces(&from), steps)?.ok_or(failure);
-                }
-                found => found?,
+            let (found, may_settle) = match find(&now.problem(), &from, steps)? {
+                Found::Last(found) => return Ok(found),
+                Found::OfMultipliers(found) => (found, true),
+                Found::OnTheWay(found) => (found, false),
             };
             steps += found.steps;
-            if let Some(found) = exactly(&found.z, &found.forces, steps)? {
-                return Ok(found);
-            }
-            if exact.is_none() && before.is_some_and(|before| yielding.is_settled(&before, &found.forces)) {
+            if may_settle && before.is_some_and(|before| yielding.is_settled(&before, &found.forces)) {
                 return Ok(ConeAnswer { steps, ..found });
             }
             let [held, terms] = yielding.held_by(stiffness, &found.forces);

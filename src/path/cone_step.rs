@@ -101,7 +101,21 @@ impl<'a> Stepper<'a> {
         from: &DVector<f64>,
         start: &DVector<f64>,
     ) -> Result<Option<Step>, PathError> {
-        let answer = match OnCone::new(problem).answer(start, self.watch) {
+        self.taken(problem, from, OnCone::new(problem).answer(start, self.watch))
+    }
+
+    /// The answer of a problem in which just those joints move that move in z, near it; `None` where that is none.
+    pub(super) fn kept(&self, problem: &ContactProblem, z: &DVector<f64>) -> Result<Option<Step>, PathError> {
+        self.taken(problem, &DVector::zeros(z.len()), OnCone::new(problem).kept(z))
+    }
+
+    fn taken(
+        &self,
+        problem: &ContactProblem,
+        from: &DVector<f64>,
+        found: Result<ConeAnswer, ConeFailure>,
+    ) -> Result<Option<Step>, PathError> {
+        let answer = match found {
             Ok(answer) => answer,
             Err(ConeFailure::Stopped) => return Err(PathError::Interrupted),
             Err(ConeFailure::NotConverged { .. } | ConeFailure::NotFinite | ConeFailure::DoNotFit) => return Ok(None),

@@ -29,6 +29,7 @@ mod repeated_histories_in_space;
 mod repeated_in_space;
 mod repeated_joint_histories;
 mod repeated_joints;
+mod repeated_paths_in_space;
 mod rigid;
 mod rings;
 mod settlements;

@@ -26,7 +26,7 @@ pub use check::ConeCheck;
 pub use mixed::{MixedProblem, MixedState};
 
 use super::law::{PairLaw, TangentialJoint};
-use super::sum::Sum;
+use super::sum::{HIDDEN, LAW_ROUNDING, Sum};
 use crate::lcp::problem::NOISE;
 use crate::watch::Watch;
 
@@ -138,12 +138,10 @@ pub fn answer_on_cone(
         projection::sweep(problem, &scale, &mut from, sweeps, watch)?;
         let search = newton::by_displacements(problem, &scale, from.clone(), watch)?;
         steps += search.steps;
-        let point = polish::polished(problem, search.at, &search.map.branches);
-        let forces = problem.forces(&point.bending);
-        let check = ConeCheck::of(problem, &point.z, &forces);
+        let found = problem.polished(polish::held(problem, search.at, &search.map.branches), start, steps);
+        let check = found.check;
         if check.passed {
-            let (states, distance) = (problem.states(&point.z), problem.slip_difference(&point.z, start));
-            return Ok(ConeAnswer { z: point.z, forces, states, check, steps, distance });
+            return Ok(found);
         }
         if best.as_ref().is_none_or(|best| check.violation() < best.violation()) {
             best = Some(check);
@@ -151,6 +149,20 @@ pub fn answer_on_cone(
     }
     let (pair, violation) = best.map_or((0, f64::INFINITY), |check| (check.worst_pair, check.violation()));
     Err(ConeFailure::NotConverged { steps, starts: SWEEPS.len(), pair, violation })
+}
+
+/// The answer in which just those joints move that move in z, near it. It may break the laws by twice what rounding
+/// explains: a little further than another does that breaks them just as much.
+///
+/// # Errors
+/// [`ConeFailure::NotConverged`] where it breaks them by more.
+pub fn kept_on_cone(problem: &ConeProblem, z: &DVector<f64>) -> Result<ConeAnswer, ConeFailure> {
+    let found = problem.polished(z.clone(), z, 0);
+    let check = found.check;
+    if check.violation() <= 2.0 * LAW_ROUNDING && check.hidden <= HIDDEN {
+        return Ok(found);
+    }
+    Err(ConeFailure::NotConverged { steps: 0, starts: 0, pair: check.worst_pair, violation: check.violation() })
 }
 
 impl ConePair {
@@ -192,6 +204,15 @@ fn across(along: [f64; 2], t: usize, u: usize) -> f64 {
 }
 
 impl ConeProblem<'_> {
+    /// z polished as it stands, with its forces and its check, found from `start`.
+    fn polished(&self, z: DVector<f64>, start: &DVector<f64>, steps: usize) -> ConeAnswer {
+        let point = polish::polished(self, z);
+        let forces = self.forces(&point.bending);
+        let check = ConeCheck::of(self, &point.z, &forces);
+        let (states, distance) = (self.states(&point.z), self.slip_difference(&point.z, start));
+        ConeAnswer { z: point.z, forces, states, check, steps, distance }
+    }
+
     /// r of every joint, a stiffness > 0: R_ii, in the tangent plane of a pair the same along both directions. A joint
     /// without stiffness takes that of the others: the natural map has the same zeros with any r.
     fn scale(&self) -> DVector<f64> {

@@ -20,8 +20,8 @@ const ROUNDS: usize = 5;
 /// Residuals up to this share of their terms are as good as z in f64 can make them.
 const GOOD: f64 = NOISE / 32.0;
 
-/// z with what is held at exactly 0 and the rest put right; unchanged where no round helps.
-pub(super) fn polished(problem: &ConeProblem, mut z: DVector<f64>, states: &[Branch]) -> Point {
+/// z with what is held at exactly 0.
+pub(super) fn held(problem: &ConeProblem, mut z: DVector<f64>, states: &[Branch]) -> DVector<f64> {
     for (i, (pair, state)) in problem.pairs.iter().zip(states).enumerate() {
         if state.is_closed {
             z[i] = 0.0;
@@ -30,6 +30,11 @@ pub(super) fn polished(problem: &ConeProblem, mut z: DVector<f64>, states: &[Bra
             pair.tangents.clone().for_each(|joint| z[joint] = 0.0);
         }
     }
+    z
+}
+
+/// z with what moves put right; unchanged where no round helps.
+pub(super) fn polished(problem: &ConeProblem, z: DVector<f64>) -> Point {
     let mut best = problem.stilled(Point::at(problem, z));
     let mut rows = Rows::at(problem, &best);
     for _ in 0..ROUNDS {
