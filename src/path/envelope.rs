@@ -2,7 +2,7 @@
 //! over a single one, otherwise on a grid of answers, refined around its extremes.
 
 use super::profile::{Shape, profile};
-use super::quantity::{Facts, Value};
+use super::quantity::{Facts, Value, history_for};
 use super::route::{Known, Route};
 use super::start::PathError;
 use crate::model::quantity::Quantity;
@@ -106,7 +106,9 @@ fn values(
     let Some((there, solved)) = case.solved_at(&settings)?.filter(|(_, solved)| solved.answer.is_answer()) else {
         return Ok(None);
     };
-    let facts = Facts::of_answer(there.case(case), &solved);
+    let there = there.case(case);
+    let history = history_for(there, quantities)?;
+    let facts = Facts::of_answer(there, &solved).beside(history.as_ref());
     Ok(Some(quantities.iter().map(|quantity| facts.value(quantity).ok()?.number()).collect()))
 }
 

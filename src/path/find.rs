@@ -2,11 +2,10 @@
 //! answers of their own.
 
 use super::profile::{ROUNDING, Shape, number, profile, zero};
-use super::quantity::Value;
+use super::quantity::{Facts, Value, history_for};
 use super::route::{Known, Route};
 use super::start::PathError;
 use crate::model::quantity::Quantity;
-use crate::path::quantity::Facts;
 use crate::solve::Case;
 
 /// Intervals into which a range is cut where there is no exact path.
@@ -216,7 +215,9 @@ fn solved_value(case: Case<'_>, name: &str, at: f64, quantity: &Quantity) -> Res
     if !solved.answer.is_answer() && quantity.is_of_state() {
         return Ok(None);
     }
-    Ok(Facts::of_answer(there.case(case), &solved).value(quantity).ok())
+    let there = there.case(case);
+    let history = history_for(there, std::slice::from_ref(quantity))?;
+    Ok(Facts::of_answer(there, &solved).beside(history.as_ref()).value(quantity).ok())
 }
 
 fn on_grid(

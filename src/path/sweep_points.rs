@@ -5,7 +5,9 @@ use std::ops::Range;
 use rayon::prelude::*;
 use serde_json::Value;
 
-use super::quantity::Facts;
+use super::quantity::{Facts, history_for};
+use super::stages::{History, HistoryEnd};
+use super::start::PathError;
 use super::sweep::{Found, Sweep, fields};
 use crate::answer::record::Answer;
 use crate::model::parameter::ParameterValues;
@@ -72,12 +74,25 @@ impl Sweep<'_> {
         found.unwrap_or_else(Looked::Found)
     }
 
-    /// The row of a whole answer, its quantities included.
+    /// The row of a whole answer, its quantities included. That the history was not followed to its end is the
+    /// failure of a row that has no other.
     fn found(&self, case: Case<'_>, solved: &Solved) -> Found {
-        let facts = Facts::of_answer(case, solved);
+        let (history, missing) = match history_for(case, self.quantities) {
+            Ok(history) => {
+                let cut = history.as_ref().filter(|history| history.end != HistoryEnd::Complete);
+                let missing = cut.map(History::end_sentence);
+                (history, missing)
+            }
+            Err(PathError::Interrupted) => return Found::Stopped,
+            Err(error) => (None, Some(error.to_string())),
+        };
+        let facts = Facts::of_answer(case, solved).beside(history.as_ref());
         let quantities = self.quantities.iter();
         let values = quantities.map(|quantity| facts.value(quantity).map_or(Value::Null, |value| value.json()));
         let mut fields = fields(&solved.answer);
+        if let (Some(failure @ Value::Null), Some(why)) = (fields.last_mut(), missing) {
+            *failure = Value::String(why);
+        }
         fields.extend(values);
         Found::Solved(fields, solved.answer.is_answer())
     }

@@ -9,6 +9,7 @@ use stickslip::path::sweep::Format;
 use stickslip::solve::counted::Unbalanced;
 use stickslip::watch::Quiet;
 
+use super::common::lines::{self, report};
 use super::sweep::Case;
 
 /// What the random systems differ in.
@@ -188,4 +189,58 @@ fn answers_out_of_balance_are_seen() {
     let pressed = (0..answer.pairs.len()).find(|pair| answer.pairs[*pair].x_n > 1.0).expect("the weight");
     let off = left.with_force_off(pressed, 1e-6 * answer.pairs[pressed].x_n);
     assert_eq!(Unbalanced::are_balanced(&[&left, &off]), [true, false]);
+}
+
+/// A deck of weight G on two sliders with friction f and springs k: pulled by H in stage 2 it goes to u2 = (H − f G)/(2 k), left
+/// alone in stage 3 it comes back as far as friction lets it, to u3 = f G/(2 k) (`scenarios/isolator.json`).
+#[test]
+fn columns_of_stages_are_read_from_the_history_at_each_point() {
+    let (f, g, k) = (0.1, 2000.0, 1000.0);
+    let out = |h: f64| ((h - f * g) / (2.0 * k)).max(0.0);
+    let back = |h: f64| out(h).min(f * g / (2.0 * k));
+    let mut session = lines::embedded("isolator");
+    let sweep = "sweep H 0..1000 6 --columns 'stage 2 offset, stage 3 offset, stage 3 dissipated, z_t s1'";
+    let found = report(&mut session, sweep).unwrap();
+    let name = |name: &str| found["columns"].as_array().unwrap().iter().position(|one| one == name).unwrap();
+    for (row, h) in found["rows"].as_array().unwrap().iter().zip([0.0, 200.0, 400.0, 600.0, 800.0, 1000.0]) {
+        let near = |column: &str, right: f64| {
+            let value = row[name(column)].as_f64().unwrap_or_else(|| panic!("{column}: {row}"));
+            assert!((value - right).abs() <= 1e-12 * (1.0 + right.abs()), "{column} at {h}: {value} is not {right}");
+        };
+        near("stage 2 offset", out(h));
+        near("stage 3 offset", back(h));
+        near("stage 3 dissipated", f * g * (out(h) - back(h)));
+        // At once it would come to where it is pulled.
+        near("z_t s1", out(h));
+        assert!(row[name("failure")].is_null(), "{row}");
+    }
+    // u3 = 0.05 at H = 2 k 0.05 + f G.
+    let found = report(&mut session, "find H 0..600 where stage 3 offset = 0.05").unwrap();
+    let at = found["places"][0]["value"].as_f64().unwrap();
+    assert!((at - (2.0 * k * 0.05 + f * g)).abs() < 1e-6, "{found}");
+    let found = report(&mut session, "envelope 'stage 3 offset' over H 0..1000").unwrap();
+    let largest = found["envelope"][0]["largest"]["value"].as_f64().unwrap();
+    assert!((largest - f * g / (2.0 * k)).abs() < 1e-12, "{found}");
+    let error = report(&mut lines::embedded("beam"), "sweep f 0..1 --columns dissipated").unwrap_err();
+    assert!(error.contains("dissipated is of the load history, and the scenario has no `stages`"), "{error}");
+}
+
+/// Nothing but friction f = 0.3 under a force of 1 holds the block: T = 0.4 pushes it away in stage 2, stage 3 is not reached.
+#[test]
+fn rows_say_where_the_history_ended_early() {
+    let text = r#"{ "format": "stickslip/1", "title": "block", "parameters": { "T": 0.2 },
+        "contact_system": { "pairs": ["c"], "law": ["coulomb"], "friction": [0.3], "stiffness": [[1, 0], [0, 0]],
+            "loads": { "w": { "vector": [1, 0] }, "p": { "factor": "T", "vector": [0, 1] } } },
+        "stages": [{ "w": 1 }, { "w": 1, "p": 1 }, { "w": 2 }] }"#;
+    let mut session = lines::session(load_text("block", text, None).unwrap());
+    let found = report(&mut session, "sweep T 0.2..0.4 2 --columns 'stage 1 x_n c, stage 3 x_n c'").unwrap();
+    let name = |name: &str| found["columns"].as_array().unwrap().iter().position(|one| one == name).unwrap();
+    let [holds, slides] = &found["rows"].as_array().unwrap()[..] else { panic!("{found}") };
+    assert_eq!(
+        [&holds[name("stage 1 x_n c")], &holds[name("stage 3 x_n c")]].map(Value::as_f64),
+        [Some(1.0), Some(2.0)]
+    );
+    assert!(holds[name("failure")].is_null(), "{found}");
+    assert_eq!([&slides[name("stage 1 x_n c")], &slides[name("stage 3 x_n c")]].map(Value::as_f64), [Some(1.0), None]);
+    assert!(slides[name("failure")].as_str().is_some_and(|why| why.contains("stage 2")), "{found}");
 }

@@ -158,6 +158,15 @@ impl Quantity {
             _ => true,
         }
     }
+
+    /// Whether the load history is to be followed for it: a quantity of a stage, and the work lost on the way.
+    pub fn is_of_history(&self) -> bool {
+        match self {
+            Quantity::Stage(..) | Quantity::Answer(OfAnswer::Dissipated) => true,
+            Quantity::Probe(_, inner) => inner.is_of_history(),
+            _ => false,
+        }
+    }
 }
 
 impl fmt::Display for Quantity {

@@ -15,6 +15,7 @@ use crate::model::quantity::Quantity;
 
 pub use facts::Facts;
 pub use joint::Resultant;
+pub use path::history_for;
 pub use stress::Field;
 pub use value::{NoValue, OnPath, Value};
 

@@ -4,10 +4,24 @@ use super::facts::Facts;
 use super::value::{NoValue, Value, none};
 use crate::model::quantity::{OfAnswer, OfLoad, Quantity};
 use crate::path::limit::{self, Limit};
-use crate::path::stages::History;
+use crate::path::stages::{self, History};
 use crate::path::start::PathError;
+use crate::solve::Case;
+
+/// The load history, followed where one of the quantities is of it; `None` where none is.
+///
+/// # Errors
+/// As [`stages::follow`].
+pub fn history_for(case: Case<'_>, quantities: &[Quantity]) -> Result<Option<History>, PathError> {
+    quantities.iter().any(Quantity::is_of_history).then(|| stages::follow(case)).transpose()
+}
 
 impl<'a> Facts<'a> {
+    /// The same, with a history for the quantities that are of it; the others stay what they are.
+    pub fn beside(self, history: Option<&'a History>) -> Facts<'a> {
+        Facts { history, ..self }
+    }
+
     /// The limit of a load case, or of a parameter in which the loads are linear; `None` before anything is prepared.
     pub fn limit_of(&self, name: &str) -> Option<Result<Limit, PathError>> {
         let case = self.prepared?.case(self.scenario, self.values).watched(self.watch);

@@ -163,11 +163,7 @@ impl Session {
                 [kind(first), kind(other)].map(kind_word).join(" and ")
             ));
         }
-        let of_stage = |quantity: &Quantity| match quantity {
-            Quantity::Probe(_, inside) => matches!(**inside, Quantity::Stage(..)),
-            quantity => matches!(quantity, Quantity::Stage(..)),
-        };
-        Ok(self.history_followed().is_some() || measured.iter().any(|measured| of_stage(&measured.quantity)))
+        Ok(self.history_followed().is_some() || measured.iter().any(|measured| measured.quantity.is_of_history()))
     }
 
     /// The friction parameters named, or all, with their ranges.

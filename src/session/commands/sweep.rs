@@ -83,7 +83,13 @@ impl Session {
     /// The quantities of `--columns`.
     fn columns(&self, text: Option<&str>) -> Result<Vec<Quantity>, CommandError> {
         let found = text.map_or(Ok(Vec::new()), |text| quantity::read_text(text, &self.names()));
-        found.map_err(|error| CommandError::Refused(format!("sweep: {error}")))
+        let found = found.map_err(|error| CommandError::Refused(format!("sweep: {error}")))?;
+        match found.iter().find(|quantity| quantity.is_of_history()) {
+            Some(quantity) if self.now.scenario.stages.is_empty() => Err(CommandError::Refused(format!(
+                "sweep: {quantity} is of the load history, and the scenario has no `stages`"
+            ))),
+            _ => Ok(found),
+        }
     }
 
     /// The columns of a sweep with their units: parameters, what every sweep has, quantities.
