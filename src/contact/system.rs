@@ -181,20 +181,23 @@ impl ContactSystem {
         self.force_form.as_ref().is_some_and(|form| form.joints[joint])
     }
 
-    /// Why `command`, which works on R alone, cannot be used; `None` where all joints are independent.
-    pub fn dependence_refusal(&self, command: &str) -> Option<String> {
+    /// Why `command`, which works on R alone, cannot be used, and what to do `instead`; `None` where all joints are
+    /// independent.
+    pub fn dependence_refusal(&self, command: &str, instead: &str) -> Option<String> {
         let exact = self.yielding.as_ref().map_or(self, |yielding| &yielding.exact);
         let form = exact.force_form.as_ref()?;
         let felt = |joint: usize| form.self_stress.row(joint).amax() > 0.0;
         let of_pair = |(i, pair): &(usize, &ContactPair)| felt(*i) || pair.tangential.clone().any(felt);
         let ids: Vec<&str> = self.pairs.iter().enumerate().filter(of_pair).map(|(_, pair)| pair.id.as_str()).collect();
         if ids.is_empty() {
-            return Some(format!("`{command}` needs a contact stiffness matrix, and a singular compliance has none"));
+            return Some(format!(
+                "`{command}` needs a contact stiffness matrix, and a singular compliance has none: {instead}"
+            ));
         }
         let (named, more) = ids.split_at(ids.len().min(6));
         let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
         Some(format!(
-            "`{command}` needs joints that are independent of one another; those of {}{more} repeat one another",
+            "`{command}` needs joints that are independent of one another; those of {}{more} repeat one another: {instead}",
             named.join(", ")
         ))
     }

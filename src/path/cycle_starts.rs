@@ -94,7 +94,7 @@ impl Starts {
 /// As [`cycle`]; too many pairs, joints that repeat one another.
 pub fn from_all(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Result<Starts, PathError> {
     let system = case.prepared.system().ok_or(PathError::Plain("cycle … from all"))?;
-    if let Some(refusal) = system.dependence_refusal("cycle … from all") {
+    if let Some(refusal) = system.dependence_refusal("cycle … from all", "give slips with `from PAIR=SLIP …`") {
         return Err(PathError::Missing(refusal));
     }
     let count = system.pair_count();

@@ -150,8 +150,8 @@ fn singular() -> PathError {
 }
 
 fn undetermined(system: &ContactSystem) -> PathError {
-    let refusal = system.dependence_refusal("sensitivity").unwrap_or_default();
-    PathError::Missing(format!("{refusal}: how they share their forces has no derivative of its own"))
+    let why = "how they share their forces has no derivative of its own";
+    PathError::Missing(system.dependence_refusal("sensitivity", why).unwrap_or_default())
 }
 
 /// The problem with joints that repeat one another as they are, where its motion determines what they carry.

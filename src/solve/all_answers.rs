@@ -98,7 +98,8 @@ impl Prepared {
             }
             Geometry::Structure { system, .. } | Geometry::Contact { system, .. } => system,
         };
-        if let Some(refusal) = system.dependence_refusal("enumerate") {
+        let instead = "`export lcp FILE.json` writes an LCP whose answers can be listed";
+        if let Some(refusal) = system.dependence_refusal("enumerate", instead) {
             return Err(QuestionError::Refused(refusal));
         }
         too_many("contact pairs", system.pair_count(), MOST_PAIRS)?;

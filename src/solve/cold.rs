@@ -245,7 +245,9 @@ fn run_engine(
         Engine::Scheme => keep_scheme(&contact.lcp, tie_rule, watch),
         Engine::Tableau => (run_tableau(&contact.lcp, tie_rule, watch), None),
         Engine::Exact => {
-            if let Some(refusal) = system.dependence_refusal("engine exact") {
+            if let Some(refusal) =
+                system.dependence_refusal("engine exact", "`set engine scheme` takes them as they are")
+            {
                 return Err(SolveError::Value(refusal));
             }
             let found = system.pairs.len();

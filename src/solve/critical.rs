@@ -31,7 +31,8 @@ impl Prepared {
         let Some(system) = self.system() else {
             return refused("a bare LCP has no friction".to_owned());
         };
-        if let Some(refusal) = system.dependence_refusal("critical") {
+        let instead = format!("`trace {parameter}` follows the answer over it");
+        if let Some(refusal) = system.dependence_refusal("critical", &instead) {
             return refused(refusal);
         }
         let along = values.along(parameter);

@@ -89,7 +89,9 @@ impl Prepared {
                 })
             }
             (RunData::Contact { problem, .. }, Some(system)) => {
-                if let Some(refusal) = system.dependence_refusal("check exact") {
+                if let Some(refusal) =
+                    system.dependence_refusal("check exact", "`check` has what is left of their laws in f64")
+                {
                     return Err(QuestionError::Refused(refusal));
                 }
                 let scheme = final_scheme(solved);

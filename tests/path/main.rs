@@ -19,6 +19,7 @@ mod prove;
 mod prove_altered;
 mod prove_in_space;
 mod random;
+mod repeated_refusals;
 mod results;
 mod rules_in_space;
 mod sample;

@@ -129,7 +129,7 @@ impl Session {
 
     /// `export system FILE.json`.
     pub(in crate::session) fn export_system(&self, path: &Path, io: &Output<'_>) -> Result<(), CommandError> {
-        let system = self.ask(io, |prepared, solved, _| prepared.proved_system(solved))?;
+        let system = self.ask(io, |prepared, solved, _| prepared.proved_system(solved, "export system"))?;
         self.write_system(&system, path).map(drop)
     }
 }

@@ -94,18 +94,17 @@ fn too_many(what: &str, (found, most): (usize, usize), instead: &str) -> Result<
 }
 
 impl Prepared {
-    /// The numbers that proofs of a solved state are about.
+    /// The numbers that proofs of a solved state are about, as `command` asks for them.
     ///
     /// # Errors
     /// Joints that repeat one another, no contact pairs.
-    pub fn proved_system(&self, solved: &Solved) -> Result<ProvedSystem, QuestionError> {
+    pub fn proved_system(&self, solved: &Solved, command: &str) -> Result<ProvedSystem, QuestionError> {
         match (&solved.run, &*self.geometry) {
             (RunData::Plain { lcp, .. }, Geometry::Plain { names, .. }) => Ok(ProvedSystem::of_plain(lcp, names)),
             (RunData::Contact { problem, .. }, _) => {
-                if let Some(refusal) = problem.system.dependence_refusal("prove") {
-                    return refused(format!(
-                        "{refusal}; `export lcp FILE.json` writes an LCP of which answers can be proved"
-                    ));
+                let instead = "`export lcp FILE.json` writes an LCP of which answers can be proved";
+                if let Some(refusal) = problem.system.dependence_refusal(command, instead) {
+                    return refused(refusal);
                 }
                 Ok(ProvedSystem::Contact(ProvedContact::of(problem, self.built())))
             }
@@ -118,7 +117,7 @@ impl Prepared {
     /// # Errors
     /// Nothing is proved of it, it is too large, it was stopped.
     pub fn prove(&self, solved: &Solved, watch: &dyn Watch) -> Result<Proof, QuestionError> {
-        let system = self.proved_system(solved)?;
+        let system = self.proved_system(solved, "prove")?;
         if solved.answer.is_answer() || solved.answer.outcome == OutcomeKind::CheckFailed {
             return prove_answer(system, solved, watch);
         }
@@ -170,7 +169,7 @@ impl Prepared {
     /// # Errors
     /// It is too large, or it was stopped.
     pub fn prove_all(&self, solved: &Solved, watch: &dyn Watch) -> Result<Proof, QuestionError> {
-        let system = self.proved_system(solved)?;
+        let system = self.proved_system(solved, "prove")?;
         match &system {
             ProvedSystem::Contact(contact) => {
                 let size = (contact.ids.len(), MOST_PAIRS_OF_ALL);
