@@ -3,7 +3,8 @@
 use nalgebra::DVector;
 
 use super::cone::{
-    ConeAnswer, ConeCheck, ConeFailure, ConePair, ConeProblem, MixedProblem, MixedState, answer_on_cone, kept_on_cone,
+    ConeAnswer, ConeCheck, ConeFailure, ConePair, ConeProblem, MixedProblem, MixedState, answer_nearby, answer_on_cone,
+    kept_on_cone,
 };
 use super::problem::ContactProblem;
 use super::sum::Sum;
@@ -14,6 +15,9 @@ use crate::watch::Watch;
 /// Largest number of answers in which the multipliers of joints that repeat one another must settle: each gains some
 /// five digits, and only parts that do not fit press on for ever.
 const MULTIPLIERS: usize = 12;
+
+/// How Newton's method searches from a start.
+type Search = fn(&ConeProblem<'_>, &DVector<f64>, &dyn Watch) -> Result<ConeAnswer, ConeFailure>;
 
 /// What was found of joints that repeat one another.
 enum Found {
@@ -66,8 +70,20 @@ impl<'a> OnCone<'a> {
     /// # Errors
     /// [`ConeFailure`].
     pub fn answer(&self, start: &DVector<f64>, watch: &dyn Watch) -> Result<ConeAnswer, ConeFailure> {
+        self.searched(start, answer_on_cone, watch)
+    }
+
+    /// The same where the answer is near the start, if there is one.
+    ///
+    /// # Errors
+    /// [`ConeFailure`].
+    pub fn nearby(&self, start: &DVector<f64>, watch: &dyn Watch) -> Result<ConeAnswer, ConeFailure> {
+        self.searched(start, answer_nearby, watch)
+    }
+
+    fn searched(&self, start: &DVector<f64>, search: Search, watch: &dyn Watch) -> Result<ConeAnswer, ConeFailure> {
         let Some(yielding) = &self.problem.system.yielding else {
-            return answer_on_cone(&self.problem(), start, watch);
+            return search(&self.problem(), start, watch);
         };
         let exact = yielding.exactly(self.problem);
         let exactly = |z: &DVector<f64>, forces: &[Sum], steps: usize| match &exact {
@@ -78,7 +94,7 @@ impl<'a> OnCone<'a> {
                 .filter(|found| found.check.passed)),
         };
         self.by_multipliers(yielding, start, |problem, from, steps| {
-            let found = match answer_on_cone(problem, from, watch) {
+            let found = match search(problem, from, watch) {
                 Err(failure @ ConeFailure::NotConverged { .. }) => {
                     return exactly(from, &problem.forces(from), steps)?.map(Found::Last).ok_or(failure);
                 }

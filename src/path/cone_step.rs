@@ -63,7 +63,7 @@ impl<'a> Stepper<'a> {
     ) -> Result<Option<Step>, PathError> {
         let problem = behind_slips(problem, from);
         let start = guess - slips_of(&problem, from);
-        self.newton(&problem, from, &start)
+        self.taken(&problem, from, OnCone::new(&problem).nearby(&start, self.watch))
     }
 
     /// The same from the answers of polygons, finer and finer; where there is none, what their runs ended in.

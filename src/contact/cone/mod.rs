@@ -31,7 +31,9 @@ use crate::lcp::problem::NOISE;
 use crate::watch::Watch;
 
 /// Sweeps of projections before each search: the first search starts at the given point.
-const SWEEPS: [usize; 4] = [0, 50, 200, 800];
+const FROM_ANYWHERE: &[usize] = &[0, 50, 200, 800];
+/// The same where the answer is near, if there is one: a path tries a shorter step where none is found.
+const FROM_NEARBY: &[usize] = &[0, 50];
 
 /// A pair: its law, and the rows of R of its tangential joints. The normal joint of pair i is row i.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,6 +128,27 @@ pub fn answer_on_cone(
     start: &DVector<f64>,
     watch: &dyn Watch,
 ) -> Result<ConeAnswer, ConeFailure> {
+    searched(problem, start, FROM_ANYWHERE, watch)
+}
+
+/// The same where the answer is near the start, if there is one.
+///
+/// # Errors
+/// [`ConeFailure`] where it finds none.
+pub fn answer_nearby(
+    problem: &ConeProblem,
+    start: &DVector<f64>,
+    watch: &dyn Watch,
+) -> Result<ConeAnswer, ConeFailure> {
+    searched(problem, start, FROM_NEARBY, watch)
+}
+
+fn searched(
+    problem: &ConeProblem,
+    start: &DVector<f64>,
+    sweeps: &[usize],
+    watch: &dyn Watch,
+) -> Result<ConeAnswer, ConeFailure> {
     let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
     if ![problem.stiffness.as_slice(), problem.load.as_slice(), start.as_slice()].into_iter().all(finite) {
         return Err(ConeFailure::NotFinite);
@@ -134,7 +157,7 @@ pub fn answer_on_cone(
     let mut steps = 0;
     let mut best: Option<ConeCheck> = None;
     let mut from = start.clone();
-    for sweeps in SWEEPS {
+    for &sweeps in sweeps {
         projection::sweep(problem, &scale, &mut from, sweeps, watch)?;
         let search = newton::by_displacements(problem, &scale, from.clone(), watch)?;
         steps += search.steps;
@@ -148,7 +171,7 @@ pub fn answer_on_cone(
         }
     }
     let (pair, violation) = best.map_or((0, f64::INFINITY), |check| (check.worst_pair, check.violation()));
-    Err(ConeFailure::NotConverged { steps, starts: SWEEPS.len(), pair, violation })
+    Err(ConeFailure::NotConverged { steps, starts: sweeps.len(), pair, violation })
 }
 
 /// The answer in which just those joints move that move in z, near it. It may break the laws by twice what rounding
