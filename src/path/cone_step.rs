@@ -5,13 +5,15 @@ use std::cell::Cell;
 
 use nalgebra::DVector;
 
+use super::kept_forces::kept_forces;
 use super::start::{PathError, cold, state_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{PairState, State};
-use crate::contact::cone::{ConeAnswer, ConeFailure, ConeState};
-use crate::contact::on_cone::OnCone;
+use crate::contact::cone::{ConeAnswer, ConeFailure, MixedProblem, MixedState};
+use crate::contact::on_cone::{OnCone, cone_pairs};
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
+use crate::contact::sum::Sum;
 use crate::contact::written::ContactLcp;
 use crate::lcp::outcome::RayDirection;
 use crate::watch::Watch;
@@ -66,12 +68,29 @@ impl<'a> Stepper<'a> {
         self.taken(&problem, from, OnCone::new(&problem).nearby(&start, self.watch))
     }
 
-    /// The same from the answers of polygons, finer and finer; where there is none, what their runs ended in.
+    /// The same from a state of the way, its z and λ. Where joints repeat one another the forces that the laws leave
+    /// undetermined stay as near to λ as the laws let them.
+    pub(super) fn onward(
+        &self,
+        problem: ContactProblem,
+        (from, force): (&DVector<f64>, &DVector<f64>),
+        guess: &DVector<f64>,
+    ) -> Result<Option<Step>, PathError> {
+        let Some(exact) = exactly_behind(&problem, from) else { return self.near(problem, from, guess) };
+        let problem = behind_slips(problem, from);
+        let start = guess - slips_of(&problem, from);
+        self.repeated((&problem, &exact), from, &start, force)
+    }
+
+    /// The answer in increments from the slips of `from` that is found from the answers of polygons, finer and finer; where
+    /// there is none, what their runs ended in. The forces of `from` are `force`, where they are known.
     pub(super) fn anywhere(
         &self,
         problem: ContactProblem,
         from: &DVector<f64>,
+        force: Option<&DVector<f64>>,
     ) -> Result<Result<Step, PolygonRay>, PathError> {
+        let exact = force.and_then(|_| exactly_behind(&problem, from));
         let mut problem = behind_slips(problem, from);
         let mut facets = self.facets;
         loop {
@@ -79,8 +98,14 @@ impl<'a> Stepper<'a> {
             let found = cold(&problem, self.watch)?;
             self.pivots.set(self.pivots.get() + found.pivots);
             if found.basis.is_some() {
-                let start = state_of(&problem, &found.contact, &found.point).z;
-                if let Some(step) = self.newton(&problem, from, &start)? {
+                let start = state_of(&problem, &found.contact, &found.point);
+                let step = match (&exact, force) {
+                    (Some(exact), Some(force)) => {
+                        self.settled((&problem, exact), from, [&start.z, force, &start.force])?
+                    }
+                    _ => self.newton(&problem, from, &start.z)?,
+                };
+                if let Some(step) = step {
                     return Ok(Ok(step));
                 }
             }
@@ -120,25 +145,80 @@ impl<'a> Stepper<'a> {
             Err(ConeFailure::Stopped) => return Err(PathError::Interrupted),
             Err(ConeFailure::NotConverged { .. } | ConeFailure::NotFinite | ConeFailure::DoNotFit) => return Ok(None),
         };
-        let scheme = scheme(problem, &answer);
-        let increments = JointState::on_cone(problem, answer);
-        Ok(Some(Step { z: &increments.z + slips_of(problem, from), increments, scheme }))
+        Ok(Some(Step::of(problem, from, JointState::on_cone(problem, answer))))
+    }
+
+    /// The answer of a problem whose joints repeat one another, near what an answer of the yielding ones makes of the
+    /// increments: the forces it keeps nearest to are those of `from`, or those of the answer itself.
+    fn settled(
+        &self,
+        problems: (&ContactProblem, &ContactProblem),
+        from: &DVector<f64>,
+        [start, force, found]: [&DVector<f64>; 3],
+    ) -> Result<Option<Step>, PathError> {
+        for forces in [force, found] {
+            if let Some(step) = self.repeated(problems, from, start, forces)? {
+                return Ok(Some(step));
+            }
+        }
+        let Some(yielded) = self.newton(problems.0, from, start)? else { return Ok(None) };
+        self.repeated(problems, from, &yielded.increments.z, &yielded.increments.force)
+    }
+
+    /// The answer near displacements and forces of all joints where these repeat one another: of a problem whose joints
+    /// yield, and the same with joints in force form.
+    fn repeated(
+        &self,
+        (problem, exact): (&ContactProblem, &ContactProblem),
+        from: &DVector<f64>,
+        start: &DVector<f64>,
+        force: &DVector<f64>,
+    ) -> Result<Option<Step>, PathError> {
+        let pairs = cone_pairs(exact);
+        let mixed = MixedProblem::new(exact, &pairs);
+        let near = |z: &DVector<f64>| -> Result<Option<MixedState>, PathError> {
+            let forces: Vec<Sum> = kept_forces(exact, z, force).iter().map(|force| Sum::exactly(*force)).collect();
+            let found = mixed.answer(z, &forces, self.watch).map_err(|_| PathError::Interrupted)?;
+            Ok(found.filter(|found| OnCone::new(problem).check(&found.z, &found.forces).passed))
+        };
+        let Some(found) = near(start)? else { return Ok(None) };
+        // Which forces are to stay is seen best where the motion is known.
+        let found = near(&found.z)?.unwrap_or(found);
+        let increments = JointState { on_cone: true, ..JointState::of_mixed(problem, found) };
+        Ok(Some(Step::of(problem, from, increments)))
+    }
+}
+
+impl Step {
+    /// The end of a step from `from`, from its answer in increments.
+    fn of(problem: &ContactProblem, from: &DVector<f64>, increments: JointState) -> Step {
+        let z = &increments.z + slips_of(problem, from);
+        Step { z, scheme: scheme(problem, &increments.z), increments }
     }
 }
 
 /// The problem for slips that count from those of `from`, total z over the joints.
 pub(super) fn behind_slips(mut problem: ContactProblem, from: &DVector<f64>) -> ContactProblem {
     let shift = slips_of(&problem, from);
-    let (load, sizes) = {
-        let stiffness = &problem.system.stiffness;
-        let mut sizes = DVector::zeros(shift.len());
-        for (joint, slip) in shift.iter().enumerate().filter(|(_, slip)| **slip != 0.0) {
-            sizes.zip_apply(&stiffness.column(joint), |size: &mut f64, entry| *size += (entry * slip).abs());
+    let [mut load, mut sizes]: [DVector<f64>; 2] = [DVector::zeros(shift.len()), DVector::zeros(shift.len())];
+    for (joint, slip) in shift.iter().enumerate().filter(|(_, slip)| **slip != 0.0) {
+        if problem.system.is_forced(joint) {
+            // Its displacement is what comes out.
+            (load[joint], sizes[joint]) = (load[joint] - slip, sizes[joint] + slip.abs());
+            continue;
         }
-        (stiffness * &shift, sizes)
-    };
+        let column = problem.system.stiffness.column(joint);
+        load.axpy(*slip, &column, 1.0);
+        sizes.zip_apply(&column, |size: &mut f64, entry: f64| *size += (entry * slip).abs());
+    }
     problem.add_load(1.0, &load, &sizes);
     problem
+}
+
+/// The same with joints in force form, where the joints of the problem yield.
+fn exactly_behind(problem: &ContactProblem, from: &DVector<f64>) -> Option<ContactProblem> {
+    let exact = problem.system.yielding.as_ref()?.exactly(problem)?;
+    Some(behind_slips(exact, from))
 }
 
 /// z_τ of total displacements, 0 in the normal joints.
@@ -158,20 +238,13 @@ pub(super) fn margins(pair: &PairState) -> [Option<f64>; 2] {
     [Some(if pair.state == State::Open { pair.z_n } else { pair.x_n }), slides]
 }
 
-fn scheme(problem: &ContactProblem, answer: &ConeAnswer) -> Scheme {
-    let pairs = problem.system.pairs.iter().zip(&problem.laws).zip(&answer.states);
+/// What the displacements of an answer say of every pair: they are exactly 0 where a joint is held.
+fn scheme(problem: &ContactProblem, z: &DVector<f64>) -> Scheme {
+    let pairs = problem.system.pairs.iter().zip(&problem.laws).enumerate();
     pairs
-        .map(|((pair, law), state)| {
-            let slips = match state {
-                ConeState::Closed => None,
-                ConeState::Stick => Some(State::Stick),
-                ConeState::Slip => Some(State::Slip),
-                ConeState::Open => {
-                    let moves = pair.tangential.clone().any(|joint| answer.z[joint] != 0.0);
-                    pair.rubs().then_some(if moves { State::Slip } else { State::Stick })
-                }
-            };
-            State::of(*state == ConeState::Open, slips, law.fixed_bound())
+        .map(|(i, (pair, law))| {
+            let slips = if pair.slip(z) == [0.0; 2] { State::Stick } else { State::Slip };
+            State::of(z[i] > 0.0, pair.rubs().then_some(slips), law.fixed_bound())
         })
         .collect()
 }

@@ -13,6 +13,7 @@ pub mod find;
 pub mod friction;
 mod friction_zero;
 pub mod grid;
+mod kept_forces;
 pub mod limit;
 pub mod load;
 pub mod load_parameter;

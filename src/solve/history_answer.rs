@@ -36,7 +36,10 @@ impl Prepared {
         answer.pairs = pairs;
         let equilibrium = self.recover(&mut answer, problem, state);
         // λ is computed afresh: the history keeps exact values where the laws give them.
-        let mut moved = JointState::at(problem, state.in_forms(system).0, 0.0);
+        // Joints that repeat one another are taken as they are, and not as they yield.
+        let exact = system.yielding.as_ref().and_then(|yielding| yielding.exactly(problem));
+        let exact = exact.as_ref().unwrap_or(problem);
+        let mut moved = JointState::at(exact, state.in_forms(&exact.system).0, 0.0);
         for joint in system.pairs.iter().flat_map(|pair| pair.tangential.clone()) {
             moved.z[joint] = last_slip[joint];
         }

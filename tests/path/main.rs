@@ -26,6 +26,7 @@ mod sample;
 mod sensitivity_in_space;
 mod session;
 mod stages;
+mod stages_at_a_stop;
 mod stages_in_space;
 mod sweep;
 mod sweep_points;

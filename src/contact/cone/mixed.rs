@@ -94,6 +94,7 @@ impl<'a> MixedProblem<'a> {
     /// The state where a search ended in an answer. What is rounding beside the other unknowns is tried as 0 first: nothing
     /// tells it from 0 but rows that hold nothing else.
     fn accepted(&self, found: Search) -> Option<MixedState> {
+        let found = self.sharpened(found);
         let size = |joint: usize, unknown: f64| {
             let root = self.scale[joint].sqrt();
             unknown.abs() * if self.is_forced(joint) { root.recip() } else { root }
@@ -106,6 +107,19 @@ impl<'a> MixedProblem<'a> {
             return Some(self.settled(cleaned, &map.branches, found.steps));
         }
         found.map.is_zero.then(|| self.settled(found.at, &found.map.branches, found.steps))
+    }
+
+    /// An answer with one more step, which takes off what rounding would excuse: the direction of a short slip hangs on it.
+    fn sharpened(&self, found: Search) -> Search {
+        let step = if found.map.is_zero { self.step(&found.at, &found.map, Step::Newton) } else { None };
+        let Some(step) = step else { return found };
+        let at = &found.at + step;
+        let map = self.map(&at);
+        let kinds = |map: &NaturalMap| -> Vec<[bool; 2]> {
+            map.branches.iter().map(|branch| [branch.is_closed, branch.outside.is_some()]).collect()
+        };
+        let is_better = map.is_zero && map.norm <= found.map.norm && kinds(&map) == kinds(&found.map);
+        if is_better { Search { at, map, steps: found.steps } } else { found }
     }
 
     fn is_forced(&self, joint: usize) -> bool {

@@ -87,7 +87,7 @@ impl Path<'_> {
     pub(super) fn beyond(&self, stepper: &Stepper<'_>, end: f64, aim: &Aim) -> Result<Beyond, PathError> {
         let value = end + BEYOND * aim.sign * aim.size_at(end);
         let problem = self.problem(value)?;
-        if let Ok(step) = stepper.anywhere(problem.clone(), &DVector::zeros(problem.system.joint_count()))? {
+        if let Ok(step) = stepper.anywhere(problem.clone(), &DVector::zeros(problem.system.joint_count()), None)? {
             let found = self.stand(value, step)?;
             if !self.is_hidden(end, &found)? {
                 return Ok(Beyond::Jump(Box::new(found)));

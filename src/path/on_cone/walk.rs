@@ -75,7 +75,7 @@ impl Path<'_> {
             }
         }
         let none = DVector::zeros(problem.system.joint_count());
-        match stepper.anywhere(problem, &none)? {
+        match stepper.anywhere(problem, &none, None)? {
             Ok(step) => self.stand(start, step),
             Err(_) => Err(PathError::NoStart {
                 name: self.name.to_owned(),

@@ -48,10 +48,8 @@ pub(super) fn balance(prepared: &Prepared, problem: &ContactProblem, history: &m
                         let factors = last.factors.iter().zip(&moment.factors).map(|(a, b)| 0.5 * (a + b));
                         let factors: Vec<f64> = factors.collect();
                         let bent = problem.dislocation(&curve.z);
-                        let at = problem.clone().with_factors(&factors);
-                        let lambda = &at.system.stiffness * &bent + &at.load;
-                        let mean =
-                            Loaded { u: &main.displacements(&factors, &bent), lambda: &lambda, factors: &factors };
+                        let middle = main.displacements(&factors, &bent);
+                        let mean = Loaded { u: &middle, lambda: &curve.force, factors: &factors };
                         let by_mean = main.work_between(&loaded(old, last), &mean)
                             + main.work_between(&mean, &loaded(&u, moment));
                         2.0 * by_mean - straight

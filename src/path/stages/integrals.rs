@@ -9,6 +9,8 @@ use crate::contact::system::ContactSystem;
 pub(super) struct Integrals {
     /// ∫ z dt over the joints; of a moment that is recorded, the mean of z.
     pub(super) z: DVector<f64>,
+    /// The same of λ.
+    pub(super) force: DVector<f64>,
     /// −∫ x_τ dz_τ.
     pub(super) dissipated: f64,
 }
@@ -21,12 +23,21 @@ impl Integrals {
         forces: [&DVector<f64>; 2],
         system: &ContactSystem,
     ) -> Integrals {
-        Integrals { z: (a + b) * (0.5 * length), dissipated: dissipated([a, b], forces, system) }
+        let half = 0.5 * length;
+        Integrals {
+            z: (a + b) * half,
+            force: (forces[0] + forces[1]) * half,
+            dissipated: dissipated([a, b], forces, system),
+        }
     }
 
     /// This way and another after it.
     pub(super) fn plus(&self, other: &Integrals) -> Integrals {
-        Integrals { z: &self.z + &other.z, dissipated: self.dissipated + other.dissipated }
+        Integrals {
+            z: &self.z + &other.z,
+            force: &self.force + &other.force,
+            dissipated: self.dissipated + other.dissipated,
+        }
     }
 }
 

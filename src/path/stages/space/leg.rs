@@ -41,6 +41,8 @@ pub(super) struct Begin<'a> {
 pub(super) struct Leg {
     /// Total z at its end, extrapolated.
     pub(super) z: DVector<f64>,
+    /// λ there, likewise.
+    pub(super) force: DVector<f64>,
     pub(super) way: Integrals,
     /// Steps at its end give this z rate.
     pub(super) rate: DVector<f64>,
@@ -48,6 +50,13 @@ pub(super) struct Leg {
     pub(super) error: f64,
     /// In how many steps it was taken at last.
     pub(super) rows: usize,
+}
+
+impl Leg {
+    /// Whether nothing turned on it: one step led where two did.
+    pub(super) fn is_straight(&self) -> bool {
+        self.rows == 2
+    }
 }
 
 /// What became of a leg.
@@ -70,7 +79,10 @@ pub(super) struct Measure {
 
 impl Measure {
     pub(super) fn new(system: &ContactSystem) -> Measure {
-        let roots = system.stiffness.diagonal().map(|entry| entry.max(0.0).sqrt());
+        // Of joints that repeat one another the independent ones are the measure, as they are and not as they yield.
+        let system = system.yielding.as_ref().map_or(system, |yielding| &yielding.exact);
+        let own = |joint: usize| if system.is_forced(joint) { 0.0 } else { system.stiffness[(joint, joint)].max(0.0) };
+        let roots = DVector::from_fn(system.joint_count(), |joint, _| own(joint).sqrt());
         let largest = roots.amax();
         let rigid: Vec<bool> = roots.iter().map(|root| *root <= RIGID * largest).collect();
         let or = if largest > 0.0 { largest } else { 1.0 };
@@ -105,7 +117,7 @@ impl Measure {
     }
 }
 
-/// A row of the tableau: z, ∫ z dt and the dissipation, one after the other.
+/// A row of the tableau: z, λ, ∫ z dt, ∫ λ dt and the dissipation, one after the other.
 type Row = Vec<DVector<f64>>;
 
 /// Takes a leg of length `h` on the course; `problem` is the problem at a place of the course.
@@ -118,14 +130,14 @@ pub(super) fn taken(
 ) -> Result<Taken, PathError> {
     let mut before: Row = Vec::new();
     for n in 1..=ROWS {
-        let (end, way, last) = match in_steps(stepper, problem, begin, (h, n))? {
+        let ([end, force], way, last) = match in_steps(stepper, problem, begin, (h, n))? {
             InSteps::Whole { end, way, last } => (end, way, last),
             InSteps::Changes => return Ok(Taken::Changes),
             InSteps::Nowhere => return Ok(Taken::Shorter),
         };
         let k = end.len();
-        let mut row: Row =
-            vec![DVector::from_iterator(2 * k + 1, end.iter().chain(way.z.iter()).copied().chain([way.dissipated]))];
+        let vectors = [&end, &force, &way.z, &way.force].into_iter().flat_map(|vector| vector.iter().copied());
+        let mut row: Row = vec![DVector::from_iterator(4 * k + 1, vectors.chain([way.dissipated]))];
         for (column, old) in before.iter().enumerate() {
             // From n − column − 1 steps to n of them.
             let ratio = n as f64 / (n - column - 1) as f64;
@@ -136,12 +148,13 @@ pub(super) fn taken(
             // Where a leg ends may not depend on its way, as where a pair opens at its end: the integrals do.
             let correction = &row[n - 1] - &row[n - 2];
             let part = |from: usize| measure.share(&correction.rows(from, k).into_owned());
-            let error = part(0).max(part(k) / h).max(measure.energy_share(correction[2 * k]));
+            let error = part(0).max(part(2 * k) / h).max(measure.energy_share(correction[4 * k]));
             if error <= TOLERANCE {
                 let best = &row[n - 1];
-                let way = Integrals { z: best.rows(k, k).into_owned(), dissipated: best[2 * k] };
+                let [z, force, of_z, of_force] = [0, 1, 2, 3].map(|part| best.rows(part * k, k).into_owned());
+                let way = Integrals { z: of_z, force: of_force, dissipated: best[4 * k] };
                 let rate = (&end - &last) * (n as f64 / h);
-                return Ok(Taken::Whole(Leg { z: best.rows(0, k).into_owned(), way, rate, error, rows: n }));
+                return Ok(Taken::Whole(Leg { z, force, way, rate, error, rows: n }));
             }
             if error.is_nan() || (n >= HOPELESS.0 && error > HOPELESS.1) {
                 break;
@@ -154,8 +167,8 @@ pub(super) fn taken(
 
 /// Where steps of one length lead to.
 enum InSteps {
-    /// z at the end and before the last of them, and their integrals.
-    Whole { end: DVector<f64>, way: Integrals, last: DVector<f64> },
+    /// z and λ at the end, z before the last of them, and their integrals.
+    Whole { end: [DVector<f64>; 2], way: Integrals, last: DVector<f64> },
     /// To something else that a pair does.
     Changes,
     /// To a step that has no answer.
@@ -172,10 +185,13 @@ fn in_steps(
     let step = h / n as f64;
     let (mut z, mut force) = (begin.z.clone(), begin.force.clone());
     let (mut last, mut rate) = (z.clone(), begin.rate.clone());
-    let mut way = Integrals { z: DVector::zeros(z.len()), dissipated: 0.0 };
+    let none = DVector::zeros(z.len());
+    let mut way = Integrals { z: none.clone(), force: none, dissipated: 0.0 };
     for j in 1..=n {
         let at = problem(begin.t + h * (j as f64 / n as f64));
-        let Some(next) = stepper.near(at.clone(), &z, &(&z + &rate * step))? else { return Ok(InSteps::Nowhere) };
+        let Some(next) = stepper.onward(at.clone(), (&z, &force), &(&z + &rate * step))? else {
+            return Ok(InSteps::Nowhere);
+        };
         if next.scheme != *begin.scheme {
             return Ok(InSteps::Changes);
         }
@@ -185,7 +201,7 @@ fn in_steps(
         last = std::mem::replace(&mut z, to);
         force = increments.force;
     }
-    Ok(InSteps::Whole { end: z, way, last })
+    Ok(InSteps::Whole { end: [z, force], way, last })
 }
 
 /// The place on the way from `begin` up to which single steps keep the scheme, between 0 and h, to `digits` of a stage.
@@ -204,7 +220,7 @@ pub(super) fn change_within(
         let inside = next.pop().filter(|at| *at > low && *at < high);
         let at = inside.unwrap_or(0.5 * (low + high));
         let there = problem(begin.t + at);
-        let found = stepper.near(there.clone(), begin.z, &(begin.z + begin.rate * at))?;
+        let found = stepper.onward(there.clone(), (begin.z, begin.force), &(begin.z + begin.rate * at))?;
         let Some(found) = found.filter(|found| found.scheme == *begin.scheme) else {
             high = at;
             continue;

@@ -33,6 +33,7 @@ use crate::model::rules::{Covering, Rules};
 use crate::path::cone_step::{PolygonRay, Scheme, Step, Stepper, behind_slips};
 use crate::path::start::PathError;
 use crate::solve::Prepared;
+use crate::text::words::short as short_number;
 use crate::watch::Watch;
 
 /// A step across an event is this part of a stage: what turns in it moves the end by some 1e-14.
@@ -46,6 +47,10 @@ const LONGEST: f64 = 0.125;
 const EASY: usize = 6;
 /// No stage has more legs than this.
 const LEGS: usize = 50_000;
+/// As many legs in a row …
+const CREEPING: usize = 256;
+/// … lead this part of a stage on at least, or are given up.
+const LEAD: f64 = 1e-3;
 /// After this many events in a row they are crossed in longer and longer steps.
 const CROWDED: usize = 4;
 /// A collapse is certified this part of a stage further on.
@@ -151,6 +156,11 @@ impl SpaceWalk<'_> {
         self.place.way = way;
     }
 
+    /// z and λ.
+    fn here(&self) -> (&DVector<f64>, &DVector<f64>) {
+        (&self.z, &self.increments.force)
+    }
+
     /// Whether the friction of a pair is at its bound.
     fn at_limit(&self, joints: std::ops::Range<usize>, shown: &PairState) -> bool {
         let noise: f64 = joints.map(|joint| NOISE * self.increments.terms[joint]).sum();
@@ -180,9 +190,9 @@ impl SpaceWalk<'_> {
         let problem = along(laws.problem, course);
         let to = reached(t, length);
         let guess = &self.z + &self.rate * length;
-        let step = match self.stepper.near(problem(to), &self.z, &guess)? {
+        let step = match self.stepper.onward(problem(to), self.here(), &guess)? {
             Some(step) => step,
-            None => match self.stepper.anywhere(problem(to), &self.z)? {
+            None => match self.stepper.anywhere(problem(to), &self.z, Some(&self.increments.force))? {
                 Ok(step) => step,
                 Err(ray) => return Ok(Err(ray)),
             },
@@ -193,7 +203,7 @@ impl SpaceWalk<'_> {
         let mut jump = false;
         if motion > FAR * size {
             let guess = &self.z + &moved / SHORTER;
-            let nearer = self.stepper.near(problem(t + length / SHORTER), &self.z, &guess)?;
+            let nearer = self.stepper.onward(problem(t + length / SHORTER), self.here(), &guess)?;
             jump = nearer.is_none_or(|nearer| self.measure.of(&(nearer.z - &self.z)) > STAYS * motion);
         }
         let ends = [&self.increments.force, &step.increments.force];
@@ -208,12 +218,13 @@ impl SpaceWalk<'_> {
 
     /// Whether one step of this length ends where two of half of it do.
     fn is_straight(&self, problem: &dyn Fn(f64) -> ContactProblem, t: f64, length: f64) -> Result<bool, PathError> {
-        let near =
-            |at: f64, from: &DVector<f64>| self.stepper.near(problem(at), from, &(from + &self.rate * (0.5 * length)));
-        let (Some(one), Some(half)) = (near(t + length, &self.z)?, near(t + 0.5 * length, &self.z)?) else {
+        let near = |at: f64, from: (&DVector<f64>, &DVector<f64>)| {
+            self.stepper.onward(problem(at), from, &(from.0 + &self.rate * (0.5 * length)))
+        };
+        let (Some(one), Some(half)) = (near(t + length, self.here())?, near(t + 0.5 * length, self.here())?) else {
             return Ok(false);
         };
-        let Some(two) = near(t + length, &half.z)? else { return Ok(false) };
+        let Some(two) = near(t + length, (&half.z, &half.increments.force))? else { return Ok(false) };
         Ok(self.measure.share(&(one.z - two.z)) <= TOLERANCE)
     }
 
@@ -239,12 +250,18 @@ impl SpaceWalk<'_> {
         };
         let last = short(1.0 - t - h);
         let to = reached(t + h, last);
-        let guess = &leg.z + &leg.rate * last;
-        let Some(step) = self.stepper.near(problem(to), &leg.z, &guess)? else {
-            return Ok(Err(Ahead::Shorter(0.5 * h)));
-        };
-        let before = &laws.problem.system.stiffness * &leg.z + course.load_at(&laws.problem.system, t + h);
-        let ends = [&before, &step.increments.force];
+        let end = &leg.z + &leg.rate * last;
+        let mut step = None;
+        if leg.is_straight() {
+            // All of it in one step: directions of slip are known the better the longer it is.
+            let found = self.stepper.onward(problem(to), self.here(), &end)?;
+            step = found.filter(|step| step.scheme == *scheme && self.measure.share(&(&step.z - &end)) <= TOLERANCE);
+        }
+        if step.is_none() {
+            step = self.stepper.onward(problem(to), (&leg.z, &leg.force), &end)?;
+        }
+        let Some(step) = step else { return Ok(Err(Ahead::Shorter(0.5 * h))) };
+        let ends = [&leg.force, &step.increments.force];
         let integrals = leg.way.plus(&Integrals::straight(last, [&leg.z, &step.z], ends, &laws.problem.system));
         way.last_slip = step.increments.z.clone();
         self.error += leg.error;
@@ -296,9 +313,9 @@ fn reached(t: f64, length: f64) -> f64 {
     if 1.0 - t - length < 0.1 * SHORT { 1.0 } else { t + length }
 }
 
-/// Integrals with the mean of z in place of its integral.
+/// Integrals with the means of z and λ in place of their integrals.
 fn mean(way: Integrals, length: f64) -> Integrals {
-    Integrals { z: way.z / length, ..way }
+    Integrals { z: way.z / length, force: way.force / length, ..way }
 }
 
 impl<'a> Follower<'a> for SpaceWalk<'a> {
@@ -346,10 +363,11 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
 
     fn stand_behind(&mut self, factors: &[f64], slips: DVector<f64>) -> Result<Option<&'static str>, PathError> {
         let gaps: Vec<f64> = self.place.laws.problem.gaps().collect();
-        let Ok(step) = self.stepper.anywhere(self.problem_at(factors, &gaps), &slips)? else {
+        let Ok(step) = self.stepper.anywhere(self.problem_at(factors, &gaps), &slips, None)? else {
             return Ok(Some("without an answer on Coulomb's cone"));
         };
-        let (scheme, still) = (step.scheme.clone(), Integrals { z: step.z.clone(), dissipated: 0.0 });
+        let (z, force) = (step.z.clone(), step.increments.force.clone());
+        let (scheme, still) = (step.scheme.clone(), Integrals { z, force, dissipated: 0.0 });
         self.stand(step, scheme, still, (factors.to_vec(), gaps));
         Ok(None)
     }
@@ -369,6 +387,7 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
         let (mut t, mut h, mut legs, mut crowded) = (0.0, LONGEST, 0, 0);
         let (mut next, mut event): (Option<f64>, Option<f64>) = (None, None);
         let mut ahead: Option<Scheme> = None;
+        let mut mark = -1.0;
         while t < 1.0 {
             self.place.watch.progress("stages", report(t));
             if self.place.watch.stop() {
@@ -377,6 +396,13 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
             legs += 1;
             if legs > LEGS {
                 return Err(breakdown(t, &format!("the limit of {LEGS} legs in a stage was reached")));
+            }
+            if legs % CREEPING == 0 {
+                if t - mark < LEAD {
+                    let by = short_number(t - mark);
+                    return Err(breakdown(t, &format!("{CREEPING} legs in a row led on by {by} of the stage only")));
+                }
+                mark = t;
             }
             let length = next.take().unwrap_or(h).min(LONGEST).min(1.0 - t - SHORT);
             let Some(scheme) = ahead.clone().filter(|_| length > 2.0 * SHORT) else {

@@ -1,0 +1,59 @@
+//! Forces that self-stress leaves free, on the way of a history: they stay what they were as far as they can.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::contact::pivoted::orthonormal;
+use crate::contact::problem::ContactProblem;
+use crate::contact::sums::joint_forces;
+use stickslip_numerics::least_norm::least_norm;
+
+/// Friction is at its bound where its reserve is this share of it.
+const AT_BOUND: f64 = 1e-6;
+/// A self-stress below this share of the largest belongs to no joint.
+const FELT: f64 = 1e-9;
+
+/// λ over the joints of a problem in force form at displacements z: of all that differ by self-stress those that change
+/// least from `force`. Friction at its bound turns only with a slip, and what is open carries nothing: these forces change
+/// only as much as no self-stress can spare them.
+pub(super) fn kept_forces(exact: &ContactProblem, z: &DVector<f64>, force: &DVector<f64>) -> DVector<f64> {
+    let system = &*exact.system;
+    let Some(form) = &system.force_form else { return force.clone() };
+    let unknowns = DVector::from_fn(z.len(), |joint, _| if system.is_forced(joint) { force[joint] } else { z[joint] });
+    let mut now = force.clone();
+    for (joint, response) in joint_forces(exact, &unknowns).into_iter().enumerate() {
+        if !system.is_forced(joint) {
+            now[joint] = response.value;
+        }
+    }
+    let mut is_kept = vec![false; z.len()];
+    for (i, (pair, law)) in system.pairs.iter().zip(&exact.laws).enumerate() {
+        is_kept[i] = z[i] > 0.0;
+        let pressed = if is_kept[i] { 0.0 } else { force[i].max(0.0) };
+        let bound = law.friction() * pressed + law.fixed_bound();
+        let [along, across] = pair.slip(force);
+        let is_at_bound = bound - along.hypot(across) <= AT_BOUND * bound;
+        pair.tangential.clone().for_each(|joint| is_kept[joint] = is_at_bound);
+    }
+    let (kept, others): (Vec<usize>, Vec<usize>) = (0..z.len()).partition(|joint| is_kept[*joint]);
+    let change = force - &now;
+    match nearest(&form.self_stress, &change, [&kept, &others]) {
+        Some(amount) => now + &form.self_stress * amount,
+        None => now,
+    }
+}
+
+/// Multiples of the columns of S that bring the rows `first` of S a as near to those of `wanted` as can be, and of all that
+/// do the rows `then`. `None` where something is not finite.
+fn nearest(s: &DMatrix<f64>, wanted: &DVector<f64>, [first, then]: [&[usize]; 2]) -> Option<DVector<f64>> {
+    let of = |rows: &[usize]| (s.select_rows(rows), wanted.select_rows(rows));
+    let (matrix, right) = of(first);
+    let felt = FELT * s.amax();
+    let rows: Vec<DVector<f64>> =
+        matrix.row_iter().map(|row| row.transpose()).filter(|row| row.norm() > felt).collect();
+    let spent = orthonormal(&rows, s.ncols());
+    let amount = &spent * least_norm(&(&matrix * &spent), &right)?;
+    let left = DMatrix::identity(s.ncols(), s.ncols()) - &spent * spent.transpose();
+    let (matrix, right) = of(then);
+    let more = least_norm(&(&matrix * &left), &(right - &matrix * &amount))?;
+    Some(amount + left * more)
+}
