@@ -188,3 +188,52 @@ fn a_bar_on_a_slope_ratchets_down_at_each_cycle() {
         }
     }
 }
+
+/// A block of weight W on a floor with friction f, pushed by 2 f W towards a stop at a distance g, on a spring k along the way
+/// (or none) and one across. Without a spring it slides away at f W, at constant load, to the stop: a jump over g that loses f W g. With
+/// one it slides there, and beyond f W + k g floor and stop take what is more.
+#[test]
+fn a_block_that_slides_away_jumps_to_its_stop() {
+    let block = |k: &str| {
+        format!(
+            r#"{{ "format": "stickslip/1", "title": "block", "nodes": {{ "b": [0, 0] }},
+              "springs": [{{ "at": "b", "direction": [0, 1], "stiffness": 1000 }}{k}],
+              "contacts": [
+                {{ "id": "floor", "node": "b", "against": "ground", "normal": [0, 1], "friction": 0.5 }},
+                {{ "id": "stop", "node": "b", "against": "ground", "normal": [-1, 0], "law": "frictionless", "gap": 0.1 }} ],
+              "loads": {{ "weight": {{ "items": [{{ "point": {{ "at": "b", "force": [0, -10] }} }}] }},
+                         "push": {{ "factor": 10, "items": [{{ "point": {{ "at": "b", "force": [1, 0] }} }}] }} }},
+              "stages": [{{ "weight": 1 }}, {{ "weight": 1, "push": 1 }}] }}"#
+        )
+    };
+    let [weight, friction, gap, push, k] = [10.0, 0.5, 0.1, 10.0, 20.0];
+    for (with_spring, text) in
+        [(false, block("")), (true, block(r#", { "at": "b", "direction": [1, 0], "stiffness": 20 }"#))]
+    {
+        let scenario = load_text("block", &text, None).expect("a sound scenario");
+        let prepared = prepare(&scenario, &Quiet).expect("sound");
+        let history = follow(prepared.case(&scenario, &scenario.parameter_values())).expect("a history");
+        assert_eq!(history.end, HistoryEnd::Complete);
+        let stage = &history.stages[1];
+        let slid = friction * weight / push;
+        let jump = stage.moments.iter().position(|moment| moment.jump);
+        assert_eq!(jump.is_some(), !with_spring);
+        if let Some(jump) = jump {
+            let [before, after] = [&stage.moments[jump - 1], &stage.moments[jump]];
+            close(before.t, slid, 1.0);
+            close(after.t, slid, 1.0);
+            close(before.pairs[0].z_t, 0.0, gap);
+            close(after.pairs[0].z_t, gap, gap);
+        } else {
+            // Half of the way at f W + k g/2.
+            let half = history.pairs_at(1, slid + 0.5 * k * gap / push).expect("within the stage");
+            close(half[0].z_t, 0.5 * gap, gap);
+        }
+        close(stage.dissipated, friction * weight * gap, 1.0);
+        let taken = if with_spring { k * gap } else { 0.0 };
+        // How floor and stop share the rest is not determined.
+        let [floor, stop] = &stage.end.pairs[..] else { panic!("two pairs") };
+        close(stop.x_n - floor.x_t, push - taken, push);
+        close(stage.energy.expect("a structure").residual, 0.0, 1.0);
+    }
+}

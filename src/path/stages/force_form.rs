@@ -17,6 +17,7 @@ use super::follower::{Follower, Limit, Place, Targets, Way, recorded};
 use super::record::History;
 use super::standing::Laws;
 use super::walk::breakdown;
+use crate::answer::check::TOLERANCE;
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{PairState, Ray, State};
 use crate::contact::load_path::{is_answer, path_lcp};
@@ -55,7 +56,7 @@ struct ForcedWalk<'a> {
 enum Ahead {
     /// The next event: its place, the LCP, the point.
     Event(f64, Box<ContactLcp>, Point),
-    /// A state a little further on that no scheme leads to from here.
+    /// A state here or a little further on that no scheme leads to from here.
     Jump(f64, Box<ContactLcp>, Point),
     /// Nothing: the ray of the nearest look ahead.
     Limit(Option<Box<(ContactLcp, RayDirection, f64)>>),
@@ -146,11 +147,26 @@ impl ForcedWalk<'_> {
         self.pairs = pairs;
     }
 
-    /// The next event after t, found from the scheme a little ahead.
-    fn ahead(&self, course: &Course, rate: &DVector<f64>, t: f64, way: &mut Way) -> Result<Ahead, PathError> {
+    /// Whether a point of the LCP of a problem beyond the committed slips is the present state: no slip in it, and as far
+    /// open. Sizes are those of the two states.
+    fn is_here(&self, problem: &ContactProblem, contact: &ContactLcp, point: &Point) -> bool {
+        let there = state_of(problem, contact, point);
+        let still = &self.state.z - &self.slips;
+        (&there.z - &still).amax() <= TOLERANCE * self.state.z.amax().max((&there.z + &self.slips).amax())
+    }
+
+    /// The next event after t, found from the scheme a little ahead. Unless it `has_jumped` to where it is, an answer at t
+    /// that is another state is jumped to.
+    fn ahead(
+        &self,
+        course: &Course,
+        rate: &DVector<f64>,
+        (t, has_jumped): (f64, bool),
+        way: &mut Way,
+    ) -> Result<Ahead, PathError> {
         let here = self.beyond_slips(&course.factors_at(t), &course.gaps_at(t));
         let path = path_lcp(&here, rate);
-        let (mut jump, mut limit) = (None, None);
+        let (mut jump, mut limit, mut elsewhere) = (None, None, None);
         for step in AHEAD {
             let to = (t + step).min(1.0);
             let problem = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
@@ -168,6 +184,11 @@ impl ForcedWalk<'_> {
             let Some(mut engine) = Parametric::new(Arc::clone(&path.lcp), basis, path.lexicographic_order()) else {
                 continue;
             };
+            let start = engine.point();
+            if !has_jumped && !self.is_here(&here, &path, &start) {
+                elsewhere = Some(Ahead::Jump(t, Box::new(path.clone()), start));
+                continue;
+            }
             let reach = Reach { target: 1.0 - t, through: false, pivots: PIVOTS };
             let followed = engine.follow(reach, &mut |_| self.place.watch.go_on());
             way.pivots += followed.pivots;
@@ -177,7 +198,8 @@ impl ForcedWalk<'_> {
                 return Ok(Ahead::Event(to, Box::new(path), point));
             }
         }
-        Ok(jump.map_or(Ahead::Limit(limit), |(to, contact, point)| Ahead::Jump(to, contact, point)))
+        let jump = jump.map(|(to, contact, point)| Ahead::Jump(to, contact, point));
+        Ok(elsewhere.or(jump).unwrap_or(Ahead::Limit(limit)))
     }
 
     /// The collapse at place t of a stage, from the ray met just beyond it.
@@ -230,7 +252,7 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError> {
         let none = DVector::zeros(self.slips.len());
         let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };
-        let (mut t, mut events) = (0.0, 0);
+        let (mut t, mut events, mut has_jumped) = (0.0, 0, false);
         let constants = |at: f64| self.problem_at(&course.factors_at(at), &course.gaps_at(at)).joint_constants();
         let rate = constants(1.0) - constants(0.0);
         if rate.amax() == 0.0 {
@@ -244,7 +266,7 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
             if events > EVENTS {
                 return Err(breakdown(t, &format!("the limit of {EVENTS} events in a stage was reached")));
             }
-            let (to, contact, point, jump) = match self.ahead(course, &rate, t, &mut way)? {
+            let (to, contact, point, jump) = match self.ahead(course, &rate, (t, has_jumped), &mut way)? {
                 Ahead::Event(to, contact, point) => (to, contact, point, false),
                 Ahead::Jump(to, contact, point) => (to, contact, point, true),
                 Ahead::Limit(ray) => return Ok((way, Some((t, self.collapse(course, t, ray))))),
@@ -256,7 +278,7 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
             self.stand(&problem, &contact, &point);
             way.last_slip = &self.slips - before;
             way.moments.push(self.moment(to, jump));
-            t = to;
+            (t, has_jumped) = (to, jump && to == t);
         }
         Ok((way, None))
     }
