@@ -137,6 +137,16 @@ impl JointState {
         self.against_file(problem)
     }
 
+    /// The magnitudes of the terms of the forces that the motion leaves undetermined, 0 of the others; `None` without such.
+    pub fn shared_terms(&self, system: &ContactSystem) -> Option<DVector<f64>> {
+        let mut shared = DVector::zeros(self.terms.len());
+        for &pair in &self.free {
+            shared[pair] = self.terms[pair];
+            system.pairs[pair].tangential.clone().for_each(|joint| shared[joint] = self.terms[joint]);
+        }
+        (!self.free.is_empty()).then_some(shared)
+    }
+
     /// The unknowns and their counterparts: z and λ, for joints in force form λ and z.
     pub fn in_forms(&self, system: &ContactSystem) -> (DVector<f64>, Vec<Sum>) {
         let (mut unknowns, mut responses) = (self.z.clone(), Vec::with_capacity(self.z.len()));

@@ -44,6 +44,8 @@ pub struct BalancedState<'a> {
     pub terms: DVector<f64>,
     /// Joint forces λ.
     pub force: &'a DVector<f64>,
+    /// Of forces that were chosen among those that self-stress leaves free the magnitudes of their terms, 0 of the others.
+    pub shared: Option<DVector<f64>>,
 }
 
 /// The largest residual relative to the forces that meet there and to what rounding may leave.
@@ -150,7 +152,7 @@ impl MainSystem {
     /// The residuals of compatibility and equilibrium as for an answer that is shown.
     fn residuals(&self, structure: &Structure, state: &BalancedState<'_>, u: &Displacements) -> f64 {
         self.compatibility_residual(u, &state.dislocation, &state.terms)
-            + self.equilibrium_residual(structure, u, state.force, state.factors)
+            + self.residual_of_shared(structure, u, (state.force, state.shared.as_ref()), state.factors)
     }
 
     /// K u and Σ_k |K_ik||u_k| of each of up to N displacements of the base dofs.
@@ -168,7 +170,8 @@ impl MainSystem {
             terms = self.k.times_absolute(&sizes);
         }
         let residual = self.unheld(self.minus_loads(forces, state.force, state.factors));
-        let rounding = self.handed_on(self.rounding_of(u, &terms, 0.0, state.factors));
+        let rounding = self.rounding_of(u, &terms, 0.0, state.factors);
+        let rounding = self.handed_on(self.with_shared(rounding, state.shared.as_ref()));
         let nothing = vec![0.0; residual.len()];
         let bound = largest_share(&residual, &nothing, &rounding);
         if self.repeated.is_empty() {
@@ -193,10 +196,31 @@ impl MainSystem {
         lambda: &DVector<f64>,
         factors: &[f64],
     ) -> f64 {
+        self.residual_of_shared(structure, u, (lambda, None), factors)
+    }
+
+    /// The same of forces some of which were chosen among those that self-stress leaves free: what they share is as large as
+    /// the magnitudes of their terms say, and so is its rounding.
+    pub fn residual_of_shared(
+        &self,
+        structure: &Structure,
+        u: &Displacements,
+        (lambda, shared): (&DVector<f64>, Option<&DVector<f64>>),
+        factors: &[f64],
+    ) -> f64 {
         let residual = self.unheld(self.unbalanced(u, lambda, factors));
         let scale = self.handed_on(self.meeting_forces(structure, u, lambda, factors));
-        let rounding = self.handed_on(self.rounding(u, factors));
+        let rounding = self.handed_on(self.with_shared(self.rounding(u, factors), shared));
         largest_share(&residual, &scale, &rounding)
+    }
+
+    /// What rounding may leave of each row with that of forces that are shared.
+    fn with_shared(&self, mut rows: Vec<f64>, shared: Option<&DVector<f64>>) -> Vec<f64> {
+        let Some(shared) = shared else { return rows };
+        for (joint, terms) in std::iter::zip(&self.all_joints, shared.iter()) {
+            self.each_term(joint, |dof, a| rows[dof] += JOINT_ROW * (a * terms).abs());
+        }
+        rows
     }
 
     /// Σ |force| that elements, springs, loads and joints bring to each component: of translations the lengths of the

@@ -140,6 +140,7 @@ impl Unbalanced {
                     dislocation: state.problem.dislocation(&state.joints.z),
                     terms: state.problem.dislocation_sizes(state.joints.z.abs()),
                     force: &state.joints.force,
+                    shared: state.joints.shared_terms(&state.problem.system),
                 })
                 .collect();
             let bounds = main.equilibrium_bounds(structure, &states);

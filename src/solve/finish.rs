@@ -61,8 +61,9 @@ impl Prepared {
             let u = main.displacements(&problem.factors, &dislocation);
             let terms = problem.dislocation_sizes(state.z.abs());
             let compatibility = main.compatibility_residual(&u, &dislocation, &terms);
-            equilibrium =
-                Some(compatibility + main.equilibrium_residual(structure, &u, &state.force, &problem.factors));
+            let shared = state.shared_terms(&problem.system);
+            let forces = (&state.force, shared.as_ref());
+            equilibrium = Some(compatibility + main.residual_of_shared(structure, &u, forces, &problem.factors));
             answer.members = self.members(&u, &problem.factors);
             answer.reactions = self.reactions(&u, &state.force, &problem.factors);
             answer.displacements = Some(NodeDisplacement::of_nodes(structure, &u.0));

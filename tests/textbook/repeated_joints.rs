@@ -350,3 +350,32 @@ fn the_written_lcp_holds_at_the_answer() {
         }
     }
 }
+
+/// A node pressed onto one face of a gap whose faces are all but parallel, and pushed along it by much less: both faces stick, the
+/// displacements are zero, and what it is pushed by is carried along the faces, whatever they share. A check that took the push
+/// for the measure of its own row would take the rounding of what presses for an error.
+#[test]
+fn a_small_push_between_faces_that_press() {
+    for turn in [1e-2, 1e-3, 1e-5, 1e-8_f64] {
+        for push in [-1e-3, 1e-6, -1e-9, 1e-9, -1e-12] {
+            let case = Case::json(json!({
+                "nodes": { "a": [0, 0] },
+                "springs": [
+                    { "at": "a", "direction": [1, 0], "stiffness": 10 }, { "at": "a", "direction": [0, 1], "stiffness": 10 }
+                ],
+                "contacts": [
+                    { "id": "below", "node": "a", "against": "ground", "normal": [0, 1], "friction": 0.3 },
+                    { "id": "above", "node": "a", "against": "ground", "normal": [-turn.sin(), -turn.cos()], "friction": 0.3 }
+                ],
+                "loads": { "all": { "items": [{ "point": { "at": "a", "force": [push, -1.0] } }] } }
+            }));
+            let answer = case.solve(&[]);
+            assert!(answer.is_answer() && answer.check.passed, "{turn} {push}: {:?}", answer.failure);
+            // t is n turned by −90°: (1, 0) below, (−cos, sin) above.
+            let [below, above] = &answer.pairs[..] else { panic!("two pairs") };
+            let along = below.x_t - above.x_n * turn.sin() - above.x_t * turn.cos();
+            let across = below.x_n - above.x_n * turn.cos() + above.x_t * turn.sin();
+            assert!((along + push).abs() <= 1e-15 && (across - 1.0).abs() <= 1e-14, "{turn} {push}: {along} {across}");
+        }
+    }
+}
