@@ -239,6 +239,35 @@ fn ground_on_the_wrong_side() {
     assert!(found.iter().all(|of| !of.message.contains("lies above")), "{found:?}");
 }
 
+/// The same nodes and the same normal once more: as a second contact, with its sides exchanged, on a face. Faces that
+/// meet in a node and the two sides of a guide are none.
+#[test]
+fn contacts_given_twice() {
+    let twice = |base: Value, changes: &[(&str, Value)]| -> Vec<(String, String)> {
+        let told = |of: Problem| {
+            let (id, others) = of.message.split_once(" has the nodes and the normal of ")?;
+            Some((of.path, format!("{id} {}", others.split(':').next()?)))
+        };
+        warnings(&with(base, changes)).into_iter().filter_map(told).collect()
+    };
+    let found = |path: &str, ids: &str| vec![(path.to_owned(), ids.to_owned())];
+    let at = |id: &str, [node, against]: [&str; 2], normal: [i32; 2]| {
+        ("/contacts/-", json!({ "id": id, "node": node, "against": against, "normal": normal, "friction": 0.1 }))
+    };
+    assert_eq!(twice(beam(), &[at("d", ["B", "ground"], [0, 1])]), found("contacts[3]", "`d` `b`"));
+    assert_eq!(twice(beam(), &[at("d", ["B", "ground"], [0, -1])]), []);
+    assert_eq!(twice(beam(), &[at("d", ["B", "ground"], [1, 0])]), []);
+    let two = |second| {
+        let stands = ("/supports", json!([{ "at": "D", "fixed": ["x", "y"] }]));
+        twice(beam(), &[("/nodes/D", json!([6, 0])), stands, at("one", ["B", "D"], [0, 1]), second])
+    };
+    assert_eq!(two(at("two", ["D", "B"], [0, -1])), found("contacts[4]", "`two` `one`"));
+    assert_eq!(two(at("two", ["D", "B"], [0, 1])), []);
+    let edge = |edge: &str| ("/contacts/-", json!({ "id": "e", "edge": edge, "against": "ground", "friction": 0.5 }));
+    assert_eq!(twice(block(), &[edge("block.bottom")]), found("contacts[1]", "`e` `base`"));
+    assert_eq!(twice(block(), &[edge("block.left")]), []);
+}
+
 #[test]
 fn pairs_that_no_case_presses() {
     // A bearing the wrong way round on a level beam: its weight opens it.

@@ -1,9 +1,10 @@
 //! What is allowed and yet hardly meant: materials no one builds with under the named units, parts that nothing uses,
-//! loads that load nothing, ground inside a body. Warnings, never errors: an odd model is still the author's.
+//! loads that load nothing, ground inside a body, contacts given twice. Warnings, never errors: an odd model is still the author's.
 
 mod loads;
 pub mod normals;
 mod stiffness;
+mod twins;
 mod units;
 mod unused;
 
@@ -48,6 +49,7 @@ pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
             warnings.extend(stiffness::weights(scenario, structure, file));
             warnings.extend(stiffness::sections(scenario, structure, file));
             warnings.extend(normals::upside_down(scenario, structure));
+            warnings.extend(twins::of_contacts(scenario, structure));
             warnings.extend(loads::of_structure(scenario, structure, file));
         }
     }
@@ -55,6 +57,13 @@ pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
         warnings.extend(loads::of_contact_system(scenario, system));
     }
     warnings
+}
+
+/// What is said as soon as a scenario is loaded: odd enough to change every answer.
+pub fn said_at_load(scenario: &Scenario) -> Vec<String> {
+    let Source::Structure(structure) = &scenario.source else { return Vec::new() };
+    let told = |Warning { path, message, help }: Warning| format!("warning: {path}: {message}: {help}");
+    twins::of_contacts(scenario, structure).into_iter().map(told).collect()
 }
 
 /// The warnings in the order of the file, each with its place.

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use clap::Args;
 use serde::Serialize;
 
-use crate::model::embedded;
+use crate::model::{embedded, plausible};
 use crate::session::language::candidates::Candidate;
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session, Setup, load};
@@ -36,6 +36,7 @@ impl Action for Load {
         let mut notes = vec![format!("{}: {}", scenario.name, scenario.title)];
         notes.extend(scenario.description.clone());
         notes.extend(scenario.notes.iter().cloned());
+        notes.extend(plausible::said_at_load(&scenario));
         session.change_noting(Setup::of(scenario), text, &notes, io)?;
         Ok(Next::Continue)
     }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::{Args, ValueEnum};
 
 use crate::model::load::at_values;
+use crate::model::plausible;
 use crate::model::scenario::{Scenario, Source};
 use crate::session::language::command::{Action, Command};
 use crate::session::language::setting::{RULES, rules_of};
@@ -109,6 +110,7 @@ impl Session {
             notes.push(format!("kept: {}", carried.kept.join(", ")));
         }
         notes.extend(carried.setup.scenario.notes.iter().cloned());
+        notes.extend(plausible::said_at_load(&carried.setup.scenario));
         self.change_noting(carried.setup, text, &notes, io)
     }
 
