@@ -15,7 +15,7 @@ use stickslip::path::sensitivity::sensitivity;
 use super::guides::{CLEARANCES, EA, EI, L, with_clearances};
 use crate::common::*;
 
-fn vector(rotation: &Rotation3<f64>, x: f64, y: f64, z: f64) -> Value {
+pub(super) fn vector(rotation: &Rotation3<f64>, x: f64, y: f64, z: f64) -> Value {
     json!((rotation * Vector3::new(x, y, z)).as_slice())
 }
 

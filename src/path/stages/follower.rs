@@ -141,7 +141,7 @@ pub(super) trait Follower<'a> {
             let Place { factors, gaps, .. } = self.place();
             let course = Course { factors: [factors.clone(), target.clone()], gaps: [gaps.clone(), gaps.clone()] };
             let before = self.states();
-            let (way, limit) = self.along(&course, &report)?;
+            let (way, limit) = self.along(&course, &report).map_err(|error| in_stage(error, index))?;
             stages.push(self.result(way, &before, limit.as_ref()));
             if let Some((t, collapse)) = limit {
                 return Ok((stages, HistoryEnd::Limit { stage: index, t, collapse: Box::new(collapse) }));
@@ -178,6 +178,16 @@ pub(super) trait Follower<'a> {
             estimated_error: self.estimated_error(),
             end,
         }
+    }
+}
+
+/// An error on the way through a stage, by whose number.
+fn in_stage(error: PathError, index: usize) -> PathError {
+    match error {
+        PathError::Breakdown { at, why, .. } => {
+            PathError::Breakdown { name: format!("the place in stage {}", index + 1), at, why }
+        }
+        other => other,
     }
 }
 

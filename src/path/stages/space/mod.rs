@@ -45,6 +45,8 @@ const LONGEST: f64 = 0.125;
 /// A leg that was taken in at most this many steps is followed by one of twice its length: k (k + 1)/2 steps in all are
 /// worth most per length where k is near the largest.
 const EASY: usize = 6;
+/// At most so many pairs are named where a stage is given up.
+const NAMED: usize = 6;
 /// No stage has more legs than this.
 const LEGS: usize = 50_000;
 /// As many legs in a row …
@@ -272,6 +274,30 @@ impl SpaceWalk<'_> {
         Ok(Ok((to, ahead, leg.rows)))
     }
 
+    /// What to say where so many tries to go on led hardly any further.
+    fn why_stuck(&self, led: f64) -> String {
+        let problem = self.problem_at(&self.place.factors, &self.place.gaps);
+        let system = &*problem.system;
+        let free =
+            system.yielding.as_ref().map_or(Vec::new(), |yielding| yielding.undetermined(&problem, &self.z, true));
+        let named = |pairs: &[usize]| {
+            let ids: Vec<&str> = pairs.iter().take(NAMED).map(|&i| system.pairs[i].id.as_str()).collect();
+            format!("{}{}", ids.join(", "), if pairs.len() > NAMED { ", …" } else { "" })
+        };
+        let led = short_number(led);
+        let tried = format!("{CREEPING} legs in a row led on by {led} of the stage only");
+        if free.is_empty() {
+            let sliding: Vec<usize> = (0..self.slid.len()).filter(|&i| self.slid[i]).collect();
+            let who = if sliding.is_empty() { String::new() } else { format!("; {} slide there", named(&sliding)) };
+            return format!("{tried}{who}: its changes crowd; slightly other proportions of the loads part them");
+        }
+        format!(
+            "{tried}: what {} carry is not determined, for their joints repeat one another, and how they stick or slip \
+             hangs on it; take the friction from some of them, or the wall behind them for a spring",
+            named(&free)
+        )
+    }
+
     /// The collapse at place t of a stage: certified just beyond, or the motion of a ray of the polygon.
     fn collapse(&self, course: &Course, t: f64, found: PolygonRay) -> Ray {
         let Place { prepared, laws, .. } = &self.place;
@@ -399,8 +425,7 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
             }
             if legs % CREEPING == 0 {
                 if t - mark < LEAD {
-                    let by = short_number(t - mark);
-                    return Err(breakdown(t, &format!("{CREEPING} legs in a row led on by {by} of the stage only")));
+                    return Err(breakdown(t, &self.why_stuck(t - mark)));
                 }
                 mark = t;
             }
