@@ -2,6 +2,7 @@
 //! or hangs between two stops. Friction of the floor and the stop's force share what pushes against the stop; the motion and
 //! what is lost do not depend on how.
 
+use nalgebra::{Matrix3, Vector3};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
@@ -128,4 +129,102 @@ fn a_slider_at_a_stop_follows_what_pulls_it_along() {
             assert_eq!(floor.state, State::Slip, "{what}");
         }
     }
+}
+
+/// Sliding at an angle against a guide: friction then has to turn at its bound without a slip before the node can slide along.
+/// Judged by a march of its own: in each of many short steps K u = F + Σ r, the forces r of the contacts projected onto their
+/// cones until nothing changes (De Saxcé's formulation, Gauss–Seidel), extrapolated from steps and half steps.
+#[test]
+fn a_slider_that_meets_a_guide_at_an_angle() {
+    let springs = [
+        ([-0.8080292439538632, -0.07781273227657076, -0.583981095251381], 1.75069607487281),
+        ([-0.34911950458084984, 0.8616907913517405, 0.3682452329913218], 2.3598696782291957),
+        ([-0.47455696437474154, -0.5014321078623364, 0.7234373012004319], 8.45403925717165),
+    ];
+    let across = [0.9873845647604357, -0.1583405231545136, 0.0];
+    let (friction, gaps) = (0.2950372759699309, [0.3126307422075534, 0.3468114173514576]);
+    let loads = [
+        [0.0, 0.0, -12.822876831986264],
+        [-3.7761295433000512, 1.389066384351226, 1.2602731520711707],
+        [3.98194542610444, 11.83484312357875, 0.3765014502052982],
+    ];
+    let point = |force: [f64; 3]| json!({ "items": [{ "point": { "at": "n", "force": force } }] });
+    let spring =
+        |(direction, stiffness): &([f64; 3], f64)| json!({ "at": "n", "direction": direction, "stiffness": stiffness });
+    let history = followed(&Case::json(json!({
+        "dimension": 3,
+        "nodes": { "n": [0, 0, 0] },
+        "springs": springs.iter().map(spring).collect::<Vec<_>>(),
+        "contacts": [
+            { "id": "floor", "node": "n", "against": "ground", "normal": [0, 0, 1], "friction": friction },
+            { "id": "near", "node": "n", "against": "ground", "normal": across, "law": "frictionless", "gap": gaps[0] },
+            { "id": "far", "node": "n", "against": "ground", "normal": across.map(|n| -n), "law": "frictionless", "gap": gaps[1] }
+        ],
+        "loads": { "w": point(loads[0]), "a": point(loads[1]), "b": point(loads[2]) },
+        "stages": [{ "w": 1 }, { "w": 1, "a": 1 }, { "w": 1, "b": 1 }, { "w": 1 }]
+    })));
+    assert_eq!(history.end, HistoryEnd::Complete);
+    let k =
+        springs.iter().fold(Matrix3::zeros(), |k, (d, s)| k + Vector3::from(*d) * Vector3::from(*d).transpose() * *s);
+    let n = Vector3::from(across);
+    let contacts = [(Vector3::z(), friction, 0.0), (n, 0.0, gaps[0]), (-n, 0.0, gaps[1])];
+    let loads = loads.map(Vector3::from);
+    let way = [loads[0], loads[0] + loads[1], loads[0] + loads[2], loads[0]];
+    let [whole, half] = [200, 400].map(|steps| march(&k, &contacts, &way, steps));
+    for (stage, (whole, half)) in history.stages.iter().zip(whole.iter().zip(&half)) {
+        let u = &stage.end.displacements.as_ref().expect("a structure")[0];
+        let expected = 2.0 * half - whole;
+        // It slides some 2.5.
+        near("u_x", u.ux, expected.x, 1e-4, 2.5);
+        near("u_y", u.uy, expected.y, 1e-4, 2.5);
+        assert!(stage.end.check.passed && stage.energy.expect("a structure").residual <= 1e-8, "{:?}", stage.end.check);
+    }
+}
+
+/// u at the end of every stage, from no load; contacts: n, f and the gap.
+fn march(
+    k: &Matrix3<f64>,
+    contacts: &[(Vector3<f64>, f64, f64)],
+    way: &[Vector3<f64>],
+    steps: usize,
+) -> Vec<Vector3<f64>> {
+    let flexibility = k.try_inverse().expect("regular");
+    let rho = contacts.iter().map(|_| 1.0 / flexibility.symmetric_eigenvalues().max()).collect::<Vec<_>>();
+    let (mut forces, mut u) = (vec![Vector3::zeros(); contacts.len()], Vector3::zeros());
+    let mut from = Vector3::zeros();
+    let mut ends = Vec::new();
+    for to in way {
+        for step in 1..=steps {
+            let load = from + (to - from) * (step as f64 / steps as f64);
+            let before = u;
+            for _ in 0..400 {
+                let mut change = 0.0_f64;
+                for (i, (n, f, gap)) in contacts.iter().enumerate() {
+                    u = flexibility * (load + forces.iter().sum::<Vector3<f64>>());
+                    let slip = (u - before) - n * n.dot(&(u - before));
+                    let open = n.dot(&u) + gap + f * slip.norm();
+                    let tried = forces[i] - (n * open + slip) * rho[i];
+                    let (pressed, along) = (n.dot(&tried), tried - n * n.dot(&tried));
+                    let size = along.norm();
+                    let next = if size <= f * pressed {
+                        tried
+                    } else if f * size <= -pressed {
+                        Vector3::zeros()
+                    } else {
+                        let pressed = (pressed + f * size) / (1.0 + f * f);
+                        n * pressed + along * if size > 0.0 { f * pressed / size } else { 0.0 }
+                    };
+                    change = change.max((next - forces[i]).amax());
+                    forces[i] = next;
+                }
+                if change <= 1e-11 * load.amax() {
+                    break;
+                }
+            }
+            u = flexibility * (load + forces.iter().sum::<Vector3<f64>>());
+        }
+        from = *to;
+        ends.push(u);
+    }
+    ends
 }
