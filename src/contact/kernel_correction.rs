@@ -33,7 +33,7 @@ fn balanced_rows(problem: &ContactProblem, contact: &ContactLcp, point: &Point) 
             if row.couple == RowKind::Normal {
                 return own / contact.force_unit + d_n * point.p;
             }
-            let bound = problem.laws[i].friction() * force[i] + problem.laws[i].fixed_bound();
+            let bound = problem.laws[i].bound(force[i]);
             (bound + own) / contact.force_unit + d_t * point.p
         })
         .collect()

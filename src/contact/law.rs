@@ -121,6 +121,11 @@ impl PairLaw {
         }
     }
 
+    /// The friction bound f x_n + c where it is pressed so, a force.
+    pub fn bound(&self, pressed: f64) -> f64 {
+        self.friction() * pressed + self.fixed_bound()
+    }
+
     /// The law with another f, where its bound depends on x_n.
     #[must_use]
     pub fn with_friction(mut self, friction: f64) -> PairLaw {

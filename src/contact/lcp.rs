@@ -178,7 +178,7 @@ impl LoadAndUnits {
                 largest = largest.max(normal.abs());
                 largest_load = largest_load.max(normal.abs());
             } else {
-                let bound = law.friction() * normal + law.fixed_bound();
+                let bound = law.bound(normal);
                 largest = largest.max((bound + own).abs()).max((bound - own).abs());
                 largest_load = largest_load.max((law.friction() * normal).abs()).max(own.abs());
             }
@@ -216,7 +216,7 @@ impl LoadAndUnits {
 
     /// The smaller of a reserve and its mirror in the main system, a force.
     fn least_reserve(&self, law: &PairLaw, pair: usize, along: &[f64]) -> f64 {
-        law.friction() * self.load[pair] + law.fixed_bound() - along.iter().sum::<f64>().abs()
+        law.bound(self.load[pair]) - along.iter().sum::<f64>().abs()
     }
 }
 

@@ -1,10 +1,12 @@
 //! A contact problem as [`super::cone`] takes it.
 
+use std::ops::ControlFlow;
+
 use nalgebra::DVector;
 
 use super::cone::{
-    ConeAnswer, ConeCheck, ConeFailure, ConePair, ConeProblem, MixedProblem, MixedState, answer_nearby, answer_on_cone,
-    kept_on_cone,
+    ConeAnswer, ConeCheck, ConeFailure, ConePair, ConeProblem, FROM_ANYWHERE, FROM_NEARBY, MixedProblem, MixedState,
+    answer_after, kept_on_cone,
 };
 use super::problem::ContactProblem;
 use super::sum::Sum;
@@ -15,19 +17,6 @@ use crate::watch::Watch;
 /// Largest number of answers in which the multipliers of joints that repeat one another must settle: each gains some
 /// five digits, and only parts that do not fit press on for ever.
 const MULTIPLIERS: usize = 12;
-
-/// How Newton's method searches from a start.
-type Search = fn(&ConeProblem<'_>, &DVector<f64>, &dyn Watch) -> Result<ConeAnswer, ConeFailure>;
-
-/// What was found of joints that repeat one another.
-enum Found {
-    /// The answer.
-    Last(ConeAnswer),
-    /// The answer where the multipliers settle.
-    OfMultipliers(ConeAnswer),
-    /// One that yields, whose multipliers bring the next one nearer.
-    OnTheWay(ConeAnswer),
-}
 
 /// The parts of a [`ConeProblem`] that are made for it.
 #[derive(Clone, Debug)]
@@ -70,7 +59,7 @@ impl<'a> OnCone<'a> {
     /// # Errors
     /// [`ConeFailure`].
     pub fn answer(&self, start: &DVector<f64>, watch: &dyn Watch) -> Result<ConeAnswer, ConeFailure> {
-        self.searched(start, answer_on_cone, watch)
+        self.searched(start, FROM_ANYWHERE, watch)
     }
 
     /// The same where the answer is near the start, if there is one.
@@ -78,12 +67,12 @@ impl<'a> OnCone<'a> {
     /// # Errors
     /// [`ConeFailure`].
     pub fn nearby(&self, start: &DVector<f64>, watch: &dyn Watch) -> Result<ConeAnswer, ConeFailure> {
-        self.searched(start, answer_nearby, watch)
+        self.searched(start, FROM_NEARBY, watch)
     }
 
-    fn searched(&self, start: &DVector<f64>, search: Search, watch: &dyn Watch) -> Result<ConeAnswer, ConeFailure> {
+    fn searched(&self, start: &DVector<f64>, sweeps: &[usize], watch: &dyn Watch) -> Result<ConeAnswer, ConeFailure> {
         let Some(yielding) = &self.problem.system.yielding else {
-            return search(&self.problem(), start, watch);
+            return answer_after(&self.problem(), start, sweeps, watch);
         };
         let exact = yielding.exactly(self.problem);
         let exactly = |z: &DVector<f64>, forces: &[Sum], steps: usize| match &exact {
@@ -93,18 +82,17 @@ impl<'a> OnCone<'a> {
                 .map(|found| self.reached(found, start, steps))
                 .filter(|found| found.check.passed)),
         };
-        self.by_multipliers(yielding, start, |problem, from, steps| {
-            let found = match search(problem, from, watch) {
+        // Where the joints as they are can be asked for, what yields is only on the way to their answer.
+        let may_settle = exact.is_none();
+        self.by_multipliers(yielding, start, may_settle, |problem, from, steps| {
+            let found = match answer_after(problem, from, sweeps, watch) {
                 Err(failure @ ConeFailure::NotConverged { .. }) => {
-                    return exactly(from, &problem.forces(from), steps)?.map(Found::Last).ok_or(failure);
+                    return exactly(from, &problem.forces(from), steps)?.map(ControlFlow::Break).ok_or(failure);
                 }
                 found => found?,
             };
-            Ok(match exactly(&found.z, &found.forces, steps + found.steps)? {
-                Some(found) => Found::Last(found),
-                None if exact.is_none() => Found::OfMultipliers(found),
-                None => Found::OnTheWay(found),
-            })
+            let last = exactly(&found.z, &found.forces, steps + found.steps)?;
+            Ok(last.map_or(ControlFlow::Continue(found), ControlFlow::Break))
         })
     }
 
@@ -116,24 +104,31 @@ impl<'a> OnCone<'a> {
     pub fn kept(&self, z: &DVector<f64>) -> Result<ConeAnswer, ConeFailure> {
         match &self.problem.system.yielding {
             None => kept_on_cone(&self.problem(), z),
-            Some(yielding) => self
-                .by_multipliers(yielding, z, |problem, from, _| Ok(Found::OfMultipliers(kept_on_cone(problem, from)?))),
+            Some(yielding) => self.by_multipliers(yielding, z, true, |problem, from, _| {
+                Ok(ControlFlow::Continue(kept_on_cone(problem, from)?))
+            }),
         }
     }
 
-    /// Answers that `find` finds near the one before, after so many steps, each with the multipliers of the one before.
-    fn by_multipliers<F>(&self, yielding: &Yielding, start: &DVector<f64>, find: F) -> Result<ConeAnswer, ConeFailure>
+    /// Answers that `find` finds near the one before, after so many steps, each with the multipliers of the one before: up
+    /// to one that is the last, or where it `may_settle`, until the multipliers do.
+    fn by_multipliers<F>(
+        &self,
+        yielding: &Yielding,
+        start: &DVector<f64>,
+        may_settle: bool,
+        find: F,
+    ) -> Result<ConeAnswer, ConeFailure>
     where
-        F: Fn(&ConeProblem<'_>, &DVector<f64>, usize) -> Result<Found, ConeFailure>,
+        F: Fn(&ConeProblem<'_>, &DVector<f64>, usize) -> Result<ControlFlow<ConeAnswer, ConeAnswer>, ConeFailure>,
     {
         let stiffness = &self.problem.system.stiffness;
         let (mut now, mut from, mut steps) = (self.clone(), start.clone(), 0);
         let mut before: Option<Vec<Sum>> = None;
         for _ in 0..MULTIPLIERS {
-            let (found, may_settle) = match find(&now.problem(), &from, steps)? {
-                Found::Last(found) => return Ok(found),
-                Found::OfMultipliers(found) => (found, true),
-                Found::OnTheWay(found) => (found, false),
+            let found = match find(&now.problem(), &from, steps)? {
+                ControlFlow::Break(last) => return Ok(last),
+                ControlFlow::Continue(found) => found,
             };
             steps += found.steps;
             if may_settle && before.is_some_and(|before| yielding.is_settled(&before, &found.forces)) {

@@ -29,7 +29,7 @@ use super::written::power_of_two;
 /// ε times the largest R_ii: forces lose a factor of some 1e5 in accuracy, and each multiplier gains as much.
 const COMPLIANCE: f64 = 1.0 / 131_072.0;
 /// A self-stress below this share of the largest belongs to no joint.
-const FELT: f64 = 1e-9;
+pub const FELT: f64 = 1e-9;
 
 /// The yielding system of one whose repeated joints stand in force form.
 pub fn yielding(exact: ContactSystem) -> ContactSystem {

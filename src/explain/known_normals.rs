@@ -38,7 +38,7 @@ pub(super) fn with_known_normals(problem: &ContactProblem, pairs: &[ConePair]) -
         let law = match pair.law.is_bilateral() {
             true => pair.law,
             false if z[i] > 0.0 => PairLaw::rubbing(0.0, pair.law.fixed_bound(), 0.0),
-            false => PairLaw::bilateral(pair.law.friction() * most + pair.law.fixed_bound()),
+            false => PairLaw::bilateral(pair.law.bound(most)),
         };
         ConePair { law, tangents: pair.tangents.clone() }
     };

@@ -152,7 +152,7 @@ impl MainSystem {
     /// The residuals of compatibility and equilibrium as for an answer that is shown.
     fn residuals(&self, structure: &Structure, state: &BalancedState<'_>, u: &Displacements) -> f64 {
         self.compatibility_residual(u, &state.dislocation, &state.terms)
-            + self.residual_of_shared(structure, u, (state.force, state.shared.as_ref()), state.factors)
+            + self.equilibrium_residual(structure, u, (state.force, state.shared.as_ref()), state.factors)
     }
 
     /// K u and Σ_k |K_ik||u_k| of each of up to N displacements of the base dofs.
@@ -188,20 +188,9 @@ impl MainSystem {
     }
 
     /// Largest |K u − F − Bᵀ λ| of a component that no support holds, relative to the forces that meet there, in the
-    /// sense of this module: at most 1e-9 if every node is balanced.
+    /// sense of this module: at most 1e-9 if every node is balanced. `shared`: of forces that were chosen among those that
+    /// self-stress leaves free, the magnitudes of their terms: what they share has that rounding, however small they are.
     pub fn equilibrium_residual(
-        &self,
-        structure: &Structure,
-        u: &Displacements,
-        lambda: &DVector<f64>,
-        factors: &[f64],
-    ) -> f64 {
-        self.residual_of_shared(structure, u, (lambda, None), factors)
-    }
-
-    /// The same of forces some of which were chosen among those that self-stress leaves free: what they share is as large as
-    /// the magnitudes of their terms say, and so is its rounding.
-    pub fn residual_of_shared(
         &self,
         structure: &Structure,
         u: &Displacements,

@@ -141,6 +141,11 @@ pub struct Pair {
 }
 
 impl Pair {
+    /// The id of the contact that it comes from: `joint` of `joint[0]`.
+    pub fn contact(&self) -> &str {
+        self.id.split('[').next().unwrap_or(&self.id)
+    }
+
     /// The weights of a node against another one, or against the ground.
     pub fn of_nodes(node: usize, against: Option<usize>) -> Weights {
         [Some((node, 1.0)), against.map(|against| (against, -1.0))].into_iter().flatten().collect()

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::contact::pivoted::orthonormal;
 use crate::contact::problem::ContactProblem;
 use crate::contact::sums::joint_forces;
+use crate::contact::yielding::FELT;
 use stickslip_numerics::least_norm::least_norm;
 
 /// Friction is at its bound where its reserve is this share of it.
@@ -15,8 +16,6 @@ const BEYOND: f64 = 1e-12;
 const WITHIN: f64 = 1e-9;
 /// Projections to and fro. Where the motion is free of slip they gain a digit in a few.
 const PROJECTIONS: usize = 200;
-/// A self-stress below this share of the largest belongs to no joint.
-const FELT: f64 = 1e-9;
 
 /// λ over the joints of a problem in force form at displacements z: of all that differ by self-stress those that change
 /// least from `force`. Friction at its bound turns only with a slip, and what is open carries nothing: these forces change
@@ -35,7 +34,7 @@ pub(super) fn kept_forces(exact: &ContactProblem, z: &DVector<f64>, force: &DVec
     for (i, (pair, law)) in system.pairs.iter().zip(&exact.laws).enumerate() {
         is_kept[i] = z[i] > 0.0;
         let pressed = if is_kept[i] { 0.0 } else { force[i].max(0.0) };
-        let bound = law.friction() * pressed + law.fixed_bound();
+        let bound = law.bound(pressed);
         let [along, across] = pair.slip(force);
         let is_at_bound = bound - along.hypot(across) <= AT_BOUND * bound;
         pair.tangential.clone().for_each(|joint| is_kept[joint] = is_at_bound);
@@ -51,9 +50,8 @@ pub(super) fn kept_forces(exact: &ContactProblem, z: &DVector<f64>, force: &DVec
 /// without a slip. By projections to and fro (von Neumann); `None` where they do not get there, as where a pair has to slip.
 fn within_laws(exact: &ContactProblem, z: &DVector<f64>, near: &DVector<f64>) -> Option<DVector<f64>> {
     let system = &*exact.system;
-    let columns: Vec<DVector<f64>> =
-        system.force_form.as_ref()?.self_stress.column_iter().map(|column| column.into_owned()).collect();
-    let self_stress = orthonormal(&columns, near.len());
+    let form = system.force_form.as_ref()?;
+    let mut basis = None;
     let mut forces = near.clone();
     for _ in 0..PROJECTIONS {
         let mut obeying = forces.clone();
@@ -63,7 +61,7 @@ fn within_laws(exact: &ContactProblem, z: &DVector<f64>, near: &DVector<f64>) ->
             } else if !pair.law.is_bilateral() {
                 obeying[i] = forces[i].max(0.0);
             }
-            let bound = law.friction() * obeying[i].max(0.0) + law.fixed_bound();
+            let bound = law.bound(obeying[i].max(0.0));
             let [along, across] = pair.slip(&forces);
             let size = along.hypot(across);
             if size > (1.0 + BEYOND) * bound {
@@ -75,7 +73,11 @@ fn within_laws(exact: &ContactProblem, z: &DVector<f64>, near: &DVector<f64>) ->
         if off.amax() <= BEYOND * forces.amax() {
             return Some(forces);
         }
-        forces += &self_stress * self_stress.tr_mul(&off);
+        let basis = basis.get_or_insert_with(|| {
+            let columns: Vec<DVector<f64>> = form.self_stress.column_iter().map(|column| column.into_owned()).collect();
+            orthonormal(&columns, near.len())
+        });
+        forces += &*basis * basis.tr_mul(&off);
     }
     None
 }

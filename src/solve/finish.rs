@@ -20,11 +20,8 @@ use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::pivot::Cycle;
 use crate::model::structure::{Dimension, Structure};
 use crate::model::uses::Redone;
-use crate::model::vector::dot;
-use crate::text::words::{list, short};
-
-/// Most pairs that a note names.
-const NAMED: usize = 6;
+use crate::model::vector::{dot, length};
+use crate::text::words::{short, some};
 
 /// A slip below this multiple of the displacements whose difference it is counts as zero.
 const SLIP_ZERO: f64 = 16.0 * f64::EPSILON;
@@ -63,11 +60,12 @@ impl Prepared {
             let compatibility = main.compatibility_residual(&u, &dislocation, &terms);
             let shared = state.shared_terms(&problem.system);
             let forces = (&state.force, shared.as_ref());
-            equilibrium = Some(compatibility + main.residual_of_shared(structure, &u, forces, &problem.factors));
+            equilibrium = Some(compatibility + main.equilibrium_residual(structure, &u, forces, &problem.factors));
             answer.members = self.members(&u, &problem.factors);
             answer.reactions = self.reactions(&u, &state.force, &problem.factors);
-            answer.displacements = Some(NodeDisplacement::of_nodes(structure, &u.0));
-            answer.notes.extend(note_on_large_displacements(structure, &u));
+            let displacements = NodeDisplacement::of_nodes(structure, &u.0);
+            answer.notes.extend(note_on_large_displacements(structure, &displacements));
+            answer.displacements = Some(displacements);
         }
         equilibrium
     }
@@ -207,22 +205,17 @@ fn notes_on_shared_forces(problem: &ContactProblem, state: &JointState) -> Vec<S
         ),
     ];
     let note = |(pairs, words): &(Vec<usize>, String)| {
-        let mut ids: Vec<String> =
-            pairs.iter().take(NAMED).map(|&pair| problem.system.pairs[pair].id.clone()).collect();
-        if pairs.len() > NAMED {
-            ids.push(format!("{} more", pairs.len() - NAMED));
-        }
-        format!("joints of {} repeat one another: {words}", list(&ids))
+        let ids: Vec<&str> = pairs.iter().map(|&pair| problem.system.pairs[pair].id.as_str()).collect();
+        format!("joints of {} repeat one another: {words}", some(&ids))
     };
     kinds.iter().filter(|(pairs, _)| !pairs.is_empty()).map(note).collect()
 }
 
 /// What is said of displacements larger than the structure itself: equilibrium is written on the structure as it is drawn, so
 /// they are no prediction, and most often a slip of units.
-fn note_on_large_displacements(structure: &Structure, u: &Displacements) -> Option<String> {
-    let size = structure.extent().iter().fold(0.0, |size: f64, side| size.hypot(*side));
-    let length = |[x, y, z, ..]: &[f64; 6]| x.hypot(*y).hypot(*z);
-    let largest = u.0.iter().map(length).fold(0.0, f64::max);
+fn note_on_large_displacements(structure: &Structure, displacements: &[NodeDisplacement]) -> Option<String> {
+    let size = length(structure.extent());
+    let largest = displacements.iter().map(NodeDisplacement::length).fold(0.0, f64::max);
     (size > 0.0 && largest > size).then(|| {
         format!(
             "the largest displacement is {} times the size of the structure, and equilibrium is written for small ones: do the \

@@ -27,9 +27,19 @@ pub fn list(words: &[String]) -> String {
     }
 }
 
+/// So many ids a sentence names.
+const NAMED: usize = 6;
+
+/// `a, b and c`; of more than six the first, and how many more: `a, b, c, d, e, f and 3 more`.
+pub fn some(ids: &[&str]) -> String {
+    let (named, more) = ids.split_at(ids.len().min(NAMED));
+    let more = (!more.is_empty()).then(|| format!("{} more", more.len()));
+    list(&named.iter().map(|id| (*id).to_owned()).chain(more).collect::<Vec<_>>())
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{list, short};
+    use super::{list, short, some};
 
     #[test]
     fn four_digits_and_no_more_zeros_than_needed() {
@@ -54,5 +64,7 @@ mod tests {
         assert_eq!(list(&words), "a, b and c");
         assert_eq!(list(&words[..2]), "a and b");
         assert_eq!(list(&words[..1]), "a");
+        assert_eq!(some(&["a", "b", "c", "d", "e", "f"]), "a, b, c, d, e and f");
+        assert_eq!(some(&["a", "b", "c", "d", "e", "f", "g", "h"]), "a, b, c, d, e, f and 2 more");
     }
 }

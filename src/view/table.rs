@@ -223,13 +223,15 @@ impl Table {
     /// The columns with as many digits as there is room for, and which of them stand beside each other.
     fn blocks(&self, style: &Style) -> (Vec<Printed>, Vec<Block>) {
         let room = style.width.saturating_sub(self.gutter());
-        for digits in [DIGITS, DIGITS - 1] {
-            let columns = self.printed(digits, style);
-            if let Some(block) = fitted(&columns, &all(&columns), room) {
-                return (columns, vec![block]);
-            }
-        }
+        let beside = |columns: &[Printed]| fitted(columns, &all(columns), room).map(|block| vec![block]);
         let columns = self.printed(DIGITS, style);
+        if let Some(blocks) = beside(&columns) {
+            return (columns, blocks);
+        }
+        let fewer = self.printed(DIGITS - 1, style);
+        if let Some(blocks) = beside(&fewer) {
+            return (fewer, blocks);
+        }
         let blocks = self.folded(&columns, room);
         (columns, blocks)
     }

@@ -31,9 +31,9 @@ use crate::lcp::problem::NOISE;
 use crate::watch::Watch;
 
 /// Sweeps of projections before each search: the first search starts at the given point.
-const FROM_ANYWHERE: &[usize] = &[0, 50, 200, 800];
+pub const FROM_ANYWHERE: &[usize] = &[0, 50, 200, 800];
 /// The same where the answer is near, if there is one: a path tries a shorter step where none is found.
-const FROM_NEARBY: &[usize] = &[0, 50];
+pub const FROM_NEARBY: &[usize] = &[0, 50];
 
 /// A pair: its law, and the rows of R of its tangential joints. The normal joint of pair i is row i.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,22 +128,14 @@ pub fn answer_on_cone(
     start: &DVector<f64>,
     watch: &dyn Watch,
 ) -> Result<ConeAnswer, ConeFailure> {
-    searched(problem, start, FROM_ANYWHERE, watch)
+    answer_after(problem, start, FROM_ANYWHERE, watch)
 }
 
-/// The same where the answer is near the start, if there is one.
+/// The same by searches after as many sweeps each: [`FROM_ANYWHERE`], [`FROM_NEARBY`].
 ///
 /// # Errors
 /// [`ConeFailure`] where it finds none.
-pub fn answer_nearby(
-    problem: &ConeProblem,
-    start: &DVector<f64>,
-    watch: &dyn Watch,
-) -> Result<ConeAnswer, ConeFailure> {
-    searched(problem, start, FROM_NEARBY, watch)
-}
-
-fn searched(
+pub fn answer_after(
     problem: &ConeProblem,
     start: &DVector<f64>,
     sweeps: &[usize],

@@ -32,7 +32,7 @@ pub fn upside_down(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
         // Coordinates carry rounding: a level beam lies on no side.
         let level = 1e-9 * (largest.abs() + least.abs());
         if along(*node) >= largest - level && least < largest - level {
-            let id = pair.id.split('[').next().unwrap_or(&pair.id);
+            let id = pair.contact();
             warnings.push(Warning::new(
                 place.to_string(),
                 format!(

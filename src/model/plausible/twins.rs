@@ -29,14 +29,14 @@ pub fn of_contacts(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
             .collect();
         if let Some(firsts) = firsts {
             let mut ids: Vec<String> =
-                firsts.into_iter().map(|first| format!("`{}`", contact(&pairs[first]))).collect();
+                firsts.into_iter().map(|first| format!("`{}`", pairs[first].contact())).collect();
             ids.dedup();
             warnings.push(Warning::new(
                 places[from].to_string(),
                 format!(
                     "`{}` has the nodes and the normal of {}: both press at the same place, and nothing says how they \
                      share the force",
-                    contact(&pairs[from]),
+                    pairs[from].contact(),
                     ids.join(", ")
                 ),
                 "keep one of them; the two sides of a guide have opposite normals",
@@ -46,11 +46,6 @@ pub fn of_contacts(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
         from += len;
     }
     warnings
-}
-
-/// The id of the contact that a pair comes from.
-fn contact(pair: &Pair) -> &str {
-    pair.id.split('[').next().unwrap_or(&pair.id)
 }
 
 /// The nodes of a pair in order.

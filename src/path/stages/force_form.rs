@@ -27,6 +27,7 @@ use crate::explain::ray;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::parametric::{Parametric, Reach};
 use crate::lcp::variable::Variable;
+use crate::path::cone_step::behind_slips;
 use crate::path::start::{PathError, cold, state_of};
 use crate::solve::Prepared;
 use crate::watch::Watch;
@@ -91,17 +92,7 @@ pub(super) fn follow<'a>(
 impl ForcedWalk<'_> {
     /// The problem for slips that count from the committed ones.
     fn beyond_slips(&self, factors: &[f64], gaps: &[f64]) -> ContactProblem {
-        let system = &*self.place.laws.problem.system;
-        let mut problem = self.problem_at(factors, gaps);
-        for joint in (0..self.slips.len()).filter(|&joint| self.slips[joint] != 0.0) {
-            let slip = self.slips[joint];
-            let shift = match system.is_forced(joint) {
-                true => DVector::from_fn(self.slips.len(), |i, _| if i == joint { -slip } else { 0.0 }),
-                false => system.stiffness.column(joint) * slip,
-            };
-            problem.add_load(1.0, &shift, &shift.abs());
-        }
-        problem
+        behind_slips(self.problem_at(factors, gaps), &self.slips)
     }
 
     /// Stands under these factors and gaps at the answer in increments from the committed slips; how the run ended where

@@ -33,7 +33,7 @@ use crate::model::rules::{Covering, Rules};
 use crate::path::cone_step::{PolygonRay, Scheme, Step, Stepper, behind_slips};
 use crate::path::start::PathError;
 use crate::solve::Prepared;
-use crate::text::words::short as short_number;
+use crate::text::words::{short as short_number, some};
 use crate::watch::Watch;
 
 /// A step across an event is this part of a stage: what turns in it moves the end by some 1e-14.
@@ -45,8 +45,6 @@ const LONGEST: f64 = 0.125;
 /// A leg that was taken in at most this many steps is followed by one of twice its length: k (k + 1)/2 steps in all are
 /// worth most per length where k is near the largest.
 const EASY: usize = 6;
-/// At most so many pairs are named where a stage is given up.
-const NAMED: usize = 6;
 /// No stage has more legs than this.
 const LEGS: usize = 50_000;
 /// As many legs in a row …
@@ -280,10 +278,7 @@ impl SpaceWalk<'_> {
         let system = &*problem.system;
         let free =
             system.yielding.as_ref().map_or(Vec::new(), |yielding| yielding.undetermined(&problem, &self.z, true));
-        let named = |pairs: &[usize]| {
-            let ids: Vec<&str> = pairs.iter().take(NAMED).map(|&i| system.pairs[i].id.as_str()).collect();
-            format!("{}{}", ids.join(", "), if pairs.len() > NAMED { ", …" } else { "" })
-        };
+        let named = |pairs: &[usize]| some(&pairs.iter().map(|&i| system.pairs[i].id.as_str()).collect::<Vec<_>>());
         let led = short_number(led);
         let tried = format!("{CREEPING} legs in a row led on by {led} of the stage only");
         if free.is_empty() {
