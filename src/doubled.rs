@@ -1,17 +1,14 @@
-//! Arithmetic in doubled precision, and the numbers that an element may be computed in.
+//! The numbers that an element may be computed in: f64, or doubled precision; and sums that know what they lose.
 //!
-//! A [`Doubled`] is the unevaluated sum of two f64, some 32 digits, by error-free transformations (Dekker 1971;
-//! Hida, Li, Bailey, *Algorithms for quad-double precision floating point arithmetic*, 2001). Residuals of equations
-//! that cancel are computed in it, and so are the stiffnesses they need: the f64 stiffness matrix of a bar divided into
-//! thousands of elements has lost the stiffness of the whole bar in the rounding of its entries. A [`Sum`] is faster
-//! where numbers are only added up, and it knows the magnitude of its terms as well.
+//! Residuals of equations that cancel are computed in doubled precision, and so are the stiffnesses they need: the f64
+//! stiffness matrix of a bar divided into thousands of elements has lost the stiffness of the whole bar in the rounding of
+//! its entries. A [`Sum`] is faster where numbers are only added up, and it knows the magnitude of its terms as well.
 
-use std::fmt;
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::Neg;
 
 use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
 use num_traits::{One, Zero};
-use stickslip_numerics::products::Split;
+pub use stickslip_numerics::doubled::Doubled;
 
 /// A number that elements are computed in: f64, or [`Doubled`] where f64 loses too much.
 pub trait Real:
@@ -48,150 +45,17 @@ impl Real for f64 {
     }
 }
 
-/// hi + lo, |lo| ≤ ½ ulp(hi).
-#[derive(Clone, Copy, Default, PartialEq)]
-pub struct Doubled {
-    hi: f64,
-    lo: f64,
-}
-
-impl Doubled {
-    /// a·b exactly, as long as what is rounded away is not below the numbers there are.
-    pub fn product(a: f64, b: f64) -> Doubled {
-        let fused = |hi: f64| Doubled { hi, lo: a.mul_add(b, -hi) };
-        if cfg!(any(target_feature = "fma", target_arch = "aarch64")) {
-            return fused(a * b);
-        }
-        // Where the processor is not known to have a fused product, calling one costs more than the halves of the
-        // digits multiplied one by one.
-        let (hi, lo) = Split::new(a).times(&Split::new(b));
-        if lo.is_finite() { Doubled { hi, lo } } else { fused(hi) }
-    }
-
-    /// What rounding to the nearest f64 leaves.
-    pub fn tail(self) -> f64 {
-        self.lo
-    }
-
-    /// hi + lo of any two numbers.
-    pub fn sum(a: f64, b: f64) -> Doubled {
-        let hi = a + b;
-        let part = hi - a;
-        Doubled { hi, lo: (a - (hi - part)) + (b - part) }
-    }
-
-    /// As [`Doubled::sum`], for |a| ≥ |b|.
-    fn ordered_sum(a: f64, b: f64) -> Doubled {
-        let hi = a + b;
-        Doubled { hi, lo: b - (hi - a) }
-    }
-}
-
 impl Real for Doubled {
     fn sqrt(self) -> Doubled {
-        if self.hi <= 0.0 {
-            return Doubled::default();
-        }
-        // One step of Newton's method from the f64 root doubles its digits.
-        let root = self.hi.sqrt();
-        let rest = self - Doubled::product(root, root);
-        Doubled::ordered_sum(root, rest.hi / (2.0 * root))
+        Doubled::sqrt(self)
     }
 
     fn to_f64(self) -> f64 {
-        self.hi
+        Doubled::to_f64(self)
     }
 
     fn difference(a: f64, b: f64) -> Doubled {
         Doubled::sum(a, -b)
-    }
-}
-
-impl fmt::Debug for Doubled {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:e} + {:e}", self.hi, self.lo)
-    }
-}
-
-impl From<f64> for Doubled {
-    fn from(value: f64) -> Doubled {
-        Doubled { hi: value, lo: 0.0 }
-    }
-}
-
-impl Neg for Doubled {
-    type Output = Doubled;
-
-    fn neg(self) -> Doubled {
-        Doubled { hi: -self.hi, lo: -self.lo }
-    }
-}
-
-impl Add for Doubled {
-    type Output = Doubled;
-
-    fn add(self, other: Doubled) -> Doubled {
-        let high = Doubled::sum(self.hi, other.hi);
-        let low = Doubled::sum(self.lo, other.lo);
-        let sum = Doubled::ordered_sum(high.hi, high.lo + low.hi);
-        Doubled::ordered_sum(sum.hi, sum.lo + low.lo)
-    }
-}
-
-impl Sub for Doubled {
-    type Output = Doubled;
-
-    fn sub(self, other: Doubled) -> Doubled {
-        self + -other
-    }
-}
-
-impl Mul for Doubled {
-    type Output = Doubled;
-
-    fn mul(self, other: Doubled) -> Doubled {
-        let product = Doubled::product(self.hi, other.hi);
-        Doubled::ordered_sum(product.hi, product.lo + (self.hi * other.lo + self.lo * other.hi))
-    }
-}
-
-impl Div for Doubled {
-    type Output = Doubled;
-
-    fn div(self, other: Doubled) -> Doubled {
-        let first = self.hi / other.hi;
-        let rest = self - other * Doubled::from(first);
-        let second = rest.hi / other.hi;
-        let rest = rest - other * Doubled::from(second);
-        Doubled::ordered_sum(first, second) + Doubled::from(rest.hi / other.hi)
-    }
-}
-
-macro_rules! assign {
-    ($($trait:ident $method:ident $operator:tt),*) => {$(
-        impl $trait for Doubled {
-            fn $method(&mut self, other: Doubled) {
-                *self = *self $operator other;
-            }
-        }
-    )*};
-}
-
-assign!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
-
-impl Zero for Doubled {
-    fn zero() -> Doubled {
-        Doubled::default()
-    }
-
-    fn is_zero(&self) -> bool {
-        self.hi == 0.0
-    }
-}
-
-impl One for Doubled {
-    fn one() -> Doubled {
-        Doubled::from(1.0)
     }
 }
 
@@ -208,16 +72,16 @@ impl Sum {
     /// Adds `term`.
     pub fn add(&mut self, term: f64) {
         let sum = Doubled::sum(self.high, term);
-        self.high = sum.hi;
-        self.low += sum.lo;
+        self.high = sum.to_f64();
+        self.low += sum.tail();
         self.magnitude += term.abs();
     }
 
     /// Adds a · b.
     pub fn add_product(&mut self, a: f64, b: f64) {
         let product = Doubled::product(a, b);
-        self.add(product.hi);
-        self.low += product.lo;
+        self.add(product.to_f64());
+        self.low += product.tail();
     }
 
     /// Its value.
@@ -253,11 +117,12 @@ pub fn sum_of_products<'a>(start: f64, terms: impl Iterator<Item = (&'a f64, &'a
 mod tests {
     use num_rational::BigRational;
     use proptest::prelude::*;
+    use stickslip_numerics::doubled as vectors;
 
     use super::*;
 
     fn exact(x: Doubled) -> BigRational {
-        BigRational::from_float(x.hi).unwrap() + BigRational::from_float(x.lo).unwrap()
+        BigRational::from_float(x.to_f64()).unwrap() + BigRational::from_float(x.tail()).unwrap()
     }
 
     fn number() -> impl Strategy<Value = Doubled> {
@@ -269,19 +134,37 @@ mod tests {
         /// The four operations and the root against rationals: 2⁻¹⁰² of the terms.
         #[test]
         fn operations_have_twice_the_digits(a in number(), b in number()) {
-            prop_assume!(a.hi != 0.0 && b.hi != 0.0);
+            prop_assume!(a.to_f64() != 0.0 && b.to_f64() != 0.0);
             let close = |found: Doubled, right: BigRational, terms: f64| {
                 let error = exact(found) - right;
                 let bound = BigRational::from_float(terms.abs() * (-102_f64).exp2()).unwrap();
                 error <= bound && error >= -bound
             };
             let (x, y) = (exact(a), exact(b));
-            prop_assert!(close(a + b, &x + &y, a.hi.abs() + b.hi.abs()));
-            prop_assert!(close(a - b, &x - &y, a.hi.abs() + b.hi.abs()));
-            prop_assert!(close(a * b, &x * &y, a.hi * b.hi));
-            prop_assert!(close(a / b, &x / &y, a.hi / b.hi));
+            prop_assert!(close(a + b, &x + &y, a.to_f64().abs() + b.to_f64().abs()));
+            prop_assert!(close(a - b, &x - &y, a.to_f64().abs() + b.to_f64().abs()));
+            prop_assert!(close(a * b, &x * &y, a.to_f64() * b.to_f64()));
+            prop_assert!(close(a / b, &x / &y, a.to_f64() / b.to_f64()));
             let root = (a * a).sqrt();
-            prop_assert!(close(root * root, exact(a * a), a.hi * a.hi));
+            prop_assert!(close(root * root, exact(a * a), a.to_f64() * a.to_f64()));
+        }
+    }
+
+    proptest! {
+        /// Work on vectors, with fused products where the processor has them, has the bytes of the operators.
+        #[test]
+        fn vectors_have_the_bytes_of_their_numbers(
+            numbers in prop::collection::vec((number(), number()), 0..40), factor in number(),
+        ) {
+            let (a, b): (Vec<Doubled>, Vec<Doubled>) = numbers.iter().copied().unzip();
+            let sum = numbers.iter().fold(Doubled::zero(), |sum, (a, b)| sum + *a * *b);
+            prop_assert_eq!(vectors::dot(&a, &b), sum);
+            let mut added = a.clone();
+            vectors::add_multiple(&mut added, factor, &b);
+            prop_assert!(numbers.iter().zip(added).all(|((a, b), added)| added == *a + factor * *b));
+            let mut scaled = a.clone();
+            vectors::scale_and_add(&mut scaled, factor, &b);
+            prop_assert!(numbers.iter().zip(scaled).all(|((a, b), scaled)| scaled == *b + factor * *a));
         }
     }
 
@@ -296,12 +179,12 @@ mod tests {
         for exponents in [[0, 0], [500, -500], [400, 500], [-400, -500], [1000, -900], [20, 1000], [3, -300]] {
             for _ in 0..1000 {
                 let [a, b] = exponents.map(&mut next);
-                let Doubled { hi, lo } = Doubled::product(a, b);
-                assert_eq!((hi, lo), (a * b, a.mul_add(b, -hi)), "{a:e} {b:e}");
+                let product = Doubled::product(a, b);
+                assert_eq!((product.to_f64(), product.tail()), (a * b, a.mul_add(b, -(a * b))), "{a:e} {b:e}");
             }
         }
-        assert_eq!(Doubled::product(0.0, -2.0), Doubled { hi: 0.0, lo: 0.0 });
-        assert!(Doubled::product(f64::MAX, 2.0).hi.is_infinite());
+        assert_eq!(Doubled::product(0.0, -2.0), Doubled::zero());
+        assert!(Doubled::product(f64::MAX, 2.0).to_f64().is_infinite());
     }
 
     #[test]

@@ -11,7 +11,7 @@ use super::error::MainSystemError;
 use super::kernel::{self, RigidKernel};
 use super::loose::Motion;
 use super::main_system::MainSystem;
-use super::refinement::Verdict;
+use super::refinement::{Field, Verdict};
 use super::sparse::SymmetricSparse;
 use crate::doubled::Real;
 use crate::model::structure::Structure;
@@ -144,7 +144,8 @@ impl MainSystem {
             // The eigenvector of a rounded R; what the structure resists is taken out of it twice.
             for _ in 0..3 {
                 let refinement = self.refinement(structure, watch)?;
-                let Some((u, _)) = refinement.displacements(&idle, None, z.as_slice(), watch)? else { break };
+                let field = Field { f: &idle, settled: None, z: z.as_slice() };
+                let Some((u, _)) = refinement.displacements(field, watch)? else { break };
                 if let Verdict::Mechanism = refinement.cost(structure, &u) {
                     free = Some(u);
                     break;

@@ -1,11 +1,10 @@
 //! Work of the loads and strain energy of the structure at given displacements.
 
 use nalgebra::DVector;
+use stickslip_numerics::doubled::dot;
 
 use super::displacements::Displacements;
 use super::main_system::MainSystem;
-use super::sparse::SymmetricSparse;
-use crate::doubled::Real;
 
 /// A state of the structure with what acts on it.
 #[derive(Clone, Copy, Debug)]
@@ -43,13 +42,15 @@ impl MainSystem {
 
     /// U = ½ uᵀ K u ≥ 0, force · length.
     pub fn strain_energy(&self, u: &Displacements) -> f64 {
-        fn half<T: Real>(k: &SymmetricSparse<T>, u: &[T]) -> f64 {
-            let force = k.times(u);
-            0.5 * std::iter::zip(force, u).fold(T::zero(), |sum, (f, u)| sum + f * *u).to_f64()
-        }
-        match &self.doubled {
-            None => half(&self.k, &self.dofs.gather(&u.0)),
-            Some(k) => half(k, &self.dofs.gather(&u.doubled())),
+        0.5 * match &self.doubled {
+            None => {
+                let u = self.dofs.gather(&u.0);
+                std::iter::zip(self.k.times(&u), u).map(|(f, u)| f * u).sum()
+            }
+            Some(k) => {
+                let u = self.dofs.gather(&u.doubled());
+                dot(&k.times(&u), &u).to_f64()
+            }
         }
     }
 }

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::assembly::on_masters;
 use super::displacements::{Displacements, Tail};
 use super::main_system::MainSystem;
-use super::refinement::Refinement;
+use super::refinement::{Field, Refinement};
 use crate::doubled::{Doubled, Real};
 use crate::model::vector::length;
 use crate::watch::Quiet;
@@ -22,8 +22,9 @@ impl MainSystem {
             let refinement = Refinement { dofs: &self.dofs, k, elimination: &self.elimination, factor: &self.factor };
             let f = sum_of_cases(self.f.iter().map(Some), factors).unwrap_or_default();
             let settled = self.settlement(factors);
+            let field = Field { f: &f, settled: settled.as_deref(), z: z.as_slice() };
             // R and RF came from the same equations, so these converge too.
-            if let Ok(Some((u, error))) = refinement.displacements(&f, settled.as_deref(), z.as_slice(), &Quiet) {
+            if let Ok(Some((u, error))) = refinement.displacements(field, &Quiet) {
                 let part = |part: fn(Doubled) -> f64| {
                     let u: Vec<f64> = u.iter().map(|&u| part(u)).collect();
                     self.dofs.scatter(&u)

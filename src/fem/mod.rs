@@ -37,6 +37,7 @@ mod body_rows;
 mod classes;
 mod condense;
 mod contrast;
+mod descent;
 mod displacements;
 mod dof;
 mod elastic_curves;

@@ -11,32 +11,31 @@
 
 use nalgebra::{DMatrix, DVector};
 use num_traits::Zero;
+use rayon::prelude::*;
+use stickslip_numerics::doubled::dot;
 
 use super::assembly::{given_entries, on_joints, on_masters};
+use super::descent::Descent;
 use super::dof::Dofs;
 use super::element::{Slot, slots, spring, stiffness};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::factor::Factor;
 use super::sparse::SymmetricSparse;
+use super::threads::can_spread;
 use super::watch::check_stop;
 use crate::doubled::{Doubled, Real};
 use crate::model::structure::{Component, Structure};
 use crate::watch::Watch;
 
-/// Conjugate gradients go on until the square of the error's energy norm has fallen to this share of the first, or no
-/// longer falls: 1e-24 of the displacements where the preconditioner is good.
-const CONVERGED: f64 = 1e-48;
+/// Fields that are solved for in step, so that each look at the factor serves all of them.
+const IN_STEP: usize = 4;
 
-/// Steps without progress after which they end.
-const PATIENCE: usize = 8;
+/// Columns of R between two words about progress.
+const COLUMNS: usize = 4 * IN_STEP;
 
-/// The largest share that counts as an answer: with a preconditioner off by a factor of 1e16, still 1e-10 of the
-/// displacements. What is left is returned and goes into the check of equilibrium.
-const ANSWERED: f64 = 1e-36;
-
-/// Far more steps than there are motions that the preconditioner does not know.
-const MOST_STEPS: usize = 400;
+/// Fewer unknowns than these are not worth a second thread.
+const LARGE: usize = 2000;
 
 /// A motion that costs at most this share (squared) of the terms that its energy sums costs nothing: by so much does
 /// the rounding of the coordinates strain the elements.
@@ -47,6 +46,16 @@ const GIVEN_DIGITS: f64 = 64.0 * f64::EPSILON;
 
 /// Below this share of its terms an energy is beyond what conjugate gradients in doubled precision can resolve.
 const UNSOLVABLE: f64 = 1e-22;
+
+/// What displacements are asked for.
+pub struct Field<'a> {
+    /// Σ F on the base dofs.
+    pub f: &'a [f64],
+    /// S s on the base dofs, where supports settle.
+    pub settled: Option<&'a [f64]>,
+    /// The dislocations.
+    pub z: &'a [f64],
+}
 
 /// What a suspect motion turned out to be.
 pub enum Verdict {
@@ -77,94 +86,119 @@ impl Refinement<'_> {
         self.elimination.expand(v, &vec![0.0; self.elimination.joints()])
     }
 
-    /// The factor's answer to K_m v = b, in f64.
-    fn precondition(&self, b: &[Doubled]) -> Vec<Doubled> {
-        let mut v: Vec<f64> = b.iter().map(|b| b.to_f64()).collect();
-        self.factor.solve(&mut v);
-        v.into_iter().map(Doubled::from).collect()
+    /// The factor's answers to K_m v = b, in f64.
+    fn precondition<'b>(&self, b: impl Iterator<Item = &'b [Doubled]>) -> Vec<Vec<Doubled>> {
+        let mut v: Vec<Vec<f64>> = b.map(|b| b.iter().map(|b| b.to_f64()).collect()).collect();
+        self.factor.solve_many(&mut v);
+        v.into_iter().map(|v| v.into_iter().map(Doubled::from).collect()).collect()
     }
 
-    /// K_m⁻¹ b by flexible conjugate gradients (Golub, Ye 1999: the preconditioner, rounded, is not quite symmetric),
-    /// and what is left of the energy of the error.
+    /// K_m⁻¹ b for every b, and what is left of the energy of the error; `None` if one does not converge.
     ///
     /// # Errors
-    /// No convergence (`None`); interrupted.
-    fn solve(&self, b: &[Doubled], watch: &dyn Watch) -> Result<Option<(Vec<Doubled>, f64)>, MainSystemError> {
-        let mut v = vec![Doubled::zero(); b.len()];
-        let mut residual = b.to_vec();
-        let mut z = self.precondition(&residual);
-        let mut rz = dot(&residual, &z);
-        let mut direction = z.clone();
-        let first = rz;
-        let mut best = (rz, v.clone());
-        let mut idle = 0;
-        for _ in 0..MOST_STEPS {
-            if rz.is_nan() || rz <= CONVERGED * first || idle > PATIENCE {
+    /// Interrupted.
+    fn solve(
+        &self,
+        right: Vec<Vec<Doubled>>,
+        watch: &dyn Watch,
+    ) -> Result<Option<Vec<(Vec<Doubled>, f64)>>, MainSystemError> {
+        let z = self.precondition(right.iter().map(Vec::as_slice));
+        let mut all: Vec<Descent> = std::iter::zip(right, z).map(|(right, z)| Descent::new(right, z)).collect();
+        loop {
+            let mut going: Vec<&mut Descent> = all.iter_mut().filter(|descent| descent.goes_on()).collect();
+            if going.is_empty() {
                 break;
             }
             check_stop(watch)?;
-            let response = self.forces_on_masters(&self.expand(&direction));
-            let stiffness = dot(&direction, &response);
-            let step = Doubled::from(dot(&residual, &direction) / stiffness);
-            for i in 0..v.len() {
-                v[i] += step * direction[i];
-                residual[i] -= step * response[i];
+            for descent in &mut going {
+                descent.step(self.forces_on_masters(&self.expand(descent.direction())));
             }
-            z = self.precondition(&residual);
-            // Rounding may turn the sign of what is next to nothing.
-            rz = dot(&residual, &z).abs();
-            idle += 1;
-            if rz < best.0 {
-                best = (rz, v.clone());
-                idle = 0;
-            }
-            // The new direction is conjugate to the last one, whatever the preconditioner did.
-            let turn = Doubled::from(-dot(&z, &response) / stiffness);
-            for (d, z) in std::iter::zip(&mut direction, &z) {
-                *d = *z + turn * *d;
-            }
+            let z = self.precondition(going.iter().map(|descent| descent.residual()));
+            std::iter::zip(going, z).for_each(|(descent, z)| descent.turn(&z));
         }
-        let (error, v) = best;
-        Ok((error <= ANSWERED * first).then_some((v, error)))
+        Ok(all.into_iter().map(Descent::solution).collect())
     }
 
-    /// u for Σ F on the base dofs and the dislocations `z`, and what is left of the energy of the error; `None` if it
-    /// does not converge.
+    /// What `take` makes of the displacements of every field and of what is left of the energy of their error; `None` if
+    /// one does not converge.
+    ///
+    /// # Errors
+    /// Interrupted.
+    fn each<T: Send>(
+        &self,
+        fields: &[Field],
+        watch: &dyn Watch,
+        take: impl Fn(&Field, Vec<Doubled>, f64) -> T + Sync,
+    ) -> Result<Option<Vec<T>>, MainSystemError> {
+        let in_step = |fields: &[Field]| -> Result<Option<Vec<T>>, MainSystemError> {
+            let right = fields.iter().map(|field| self.right_side(field)).collect();
+            let Some(solutions) = self.solve(right, watch)? else { return Ok(None) };
+            let all = std::iter::zip(fields, solutions);
+            Ok(Some(all.map(|(field, (v, error))| take(field, self.field(field, &v), error)).collect()))
+        };
+        // The cuts depend on the number of fields alone, so that the results do not depend on the threads.
+        let groups = fields.chunks(fields.len().div_ceil(2).clamp(1, IN_STEP));
+        let groups: Vec<_> = if groups.len() > 1 && self.k.order() >= LARGE && can_spread() {
+            groups.collect::<Vec<_>>().into_par_iter().map(in_step).collect()
+        } else {
+            groups.map(in_step).collect()
+        };
+        let mut all = Vec::with_capacity(fields.len());
+        for group in groups {
+            let Some(group) = group? else { return Ok(None) };
+            all.extend(group);
+        }
+        Ok(Some(all))
+    }
+
+    /// T v + G z + S s.
+    fn field(&self, field: &Field, v: &[Doubled]) -> Vec<Doubled> {
+        let mut u = self.elimination.expand(v, field.z);
+        for (u, settled) in std::iter::zip(&mut u, field.settled.unwrap_or_default()) {
+            *u += Doubled::from(*settled);
+        }
+        u
+    }
+
+    /// Tᵀ (F − K (G z + S s)).
+    fn right_side(&self, field: &Field) -> Vec<Doubled> {
+        let mut right = self.forces_on_masters(&self.field(field, &vec![Doubled::zero(); self.elimination.masters()]));
+        let f: Vec<Doubled> = field.f.iter().map(|&f| Doubled::from(f)).collect();
+        for (right, f) in std::iter::zip(&mut right, on_masters(self.elimination, &f)) {
+            *right = f - *right;
+        }
+        right
+    }
+
+    /// u of a field, and what is left of the energy of the error; `None` if it does not converge.
     ///
     /// # Errors
     /// Interrupted.
     pub fn displacements(
         &self,
-        f: &[f64],
-        settled: Option<&[f64]>,
-        z: &[f64],
+        field: Field,
         watch: &dyn Watch,
     ) -> Result<Option<(Vec<Doubled>, f64)>, MainSystemError> {
-        let nothing = vec![Doubled::zero(); self.elimination.masters()];
-        let add_settled = |mut u: Vec<Doubled>| {
-            for (u, settled) in std::iter::zip(&mut u, settled.unwrap_or_default()) {
-                *u += Doubled::from(*settled);
-            }
-            u
-        };
-        let imposed = add_settled(self.elimination.expand(&nothing, z));
-        let mut rhs = self.forces_on_masters(&imposed);
-        let f: Vec<Doubled> = f.iter().map(|&f| Doubled::from(f)).collect();
-        for (rhs, f) in std::iter::zip(&mut rhs, on_masters(self.elimination, &f)) {
-            *rhs = f - *rhs;
-        }
-        let v = self.solve(&rhs, watch)?;
-        Ok(v.map(|(v, error)| (add_settled(self.elimination.expand(&v, z)), error)))
+        Ok(self.each(&[field], watch, |_, u, error| (u, error))?.and_then(|mut all| all.pop()))
     }
 
-    /// Gᵀ (K u − f).
-    pub(super) fn joint_forces(&self, u: &[Doubled], f: &[f64]) -> DVector<f64> {
-        let mut force = self.k.times(u);
-        for (force, f) in std::iter::zip(&mut force, f) {
-            *force -= Doubled::from(*f);
-        }
-        let force = on_joints(self.elimination, &force);
-        DVector::from_iterator(force.len(), force.into_iter().map(Real::to_f64))
+    /// Gᵀ (K u − F) of every field; `None` if one does not converge.
+    ///
+    /// # Errors
+    /// Interrupted.
+    pub fn joint_forces(
+        &self,
+        fields: &[Field],
+        watch: &dyn Watch,
+    ) -> Result<Option<Vec<DVector<f64>>>, MainSystemError> {
+        self.each(fields, watch, |field, u, _| {
+            let mut force = self.k.times(&u);
+            for (force, f) in std::iter::zip(&mut force, field.f) {
+                *force -= Doubled::from(*f);
+            }
+            let force = on_joints(self.elimination, &force);
+            DVector::from_iterator(force.len(), force.into_iter().map(Real::to_f64))
+        })
     }
 
     /// R; `None` if something does not converge.
@@ -175,13 +209,17 @@ impl Refinement<'_> {
         let joints = self.elimination.joints();
         let idle = vec![0.0; self.k.order()];
         let mut r = DMatrix::zeros(joints, joints);
-        for joint in 0..joints {
-            let mut z = vec![0.0; joints];
-            z[joint] = 1.0;
-            let Some((u, _)) = self.displacements(&idle, None, &z, watch)? else { return Ok(None) };
-            r.set_column(joint, &self.joint_forces(&u, &idle));
+        for first in (0..joints).step_by(COLUMNS) {
+            let columns = COLUMNS.min(joints - first);
+            let single = DMatrix::from_fn(joints, columns, |i, j| f64::from(i == first + j));
+            let fields: Vec<Field> =
+                single.as_slice().chunks(joints).map(|z| Field { f: &idle, settled: None, z }).collect();
+            let Some(forces) = self.joint_forces(&fields, watch)? else { return Ok(None) };
+            for (j, force) in forces.iter().enumerate() {
+                r.set_column(first + j, force);
+            }
             let what = format!("condensing to {joints} joints in doubled precision");
-            watch.progress(&what, joint as f64 / joints as f64);
+            watch.progress(&what, (first + columns) as f64 / joints as f64);
         }
         Ok(Some((&r + r.transpose()) * 0.5))
     }
@@ -197,20 +235,18 @@ impl Refinement<'_> {
         watch: &dyn Watch,
     ) -> Result<Option<Vec<DVector<f64>>>, MainSystemError> {
         let closed = vec![0.0; self.elimination.joints()];
-        let mut rf = Vec::with_capacity(f.len());
-        for (f, settled) in std::iter::zip(f, settled) {
-            let Some((u, _)) = self.displacements(f, settled.as_deref(), &closed, watch)? else { return Ok(None) };
-            rf.push(self.joint_forces(&u, f));
-        }
-        Ok(Some(rf))
+        let fields = std::iter::zip(f, settled);
+        let fields: Vec<Field> = fields.map(|(f, s)| Field { f, settled: s.as_deref(), z: &closed }).collect();
+        self.joint_forces(&fields, watch)
     }
 
     /// What the motion v that a pivot points to costs; v is freed of everything the structure resists first.
     pub fn judge(&self, structure: &Structure, v: &mut Vec<f64>) -> Verdict {
         let mut motion: Vec<Doubled> = v.iter().map(|&v| Doubled::from(v)).collect();
         for _ in 0..4 {
-            let resisted = self.precondition(&self.forces_on_masters(&self.expand(&motion)));
-            for (v, resisted) in std::iter::zip(&mut motion, resisted) {
+            let forces = self.forces_on_masters(&self.expand(&motion));
+            let resisted = self.precondition(std::iter::once(forces.as_slice()));
+            for (v, resisted) in std::iter::zip(&mut motion, resisted.into_iter().flatten()) {
                 *v -= resisted;
             }
             let largest = motion.iter().fold(0.0_f64, |m, v| m.max(v.to_f64().abs()));
@@ -251,7 +287,7 @@ impl Refinement<'_> {
         if !strained {
             return Verdict::Mechanism;
         }
-        let energy = dot(u, &self.k.times(u));
+        let energy = dot(u, &self.k.times(u)).to_f64();
         let rounded: Vec<f64> = u.iter().map(|u| u.to_f64()).collect();
         let terms: f64 = self.k.times_absolute(&rounded).iter().zip(&rounded).map(|(f, u)| f * u.abs()).sum();
         if energy <= UNSOLVABLE * terms { Verdict::Unsolvable } else { Verdict::Resisted }
@@ -289,8 +325,4 @@ fn each_stiffness(structure: &Structure, mut visit: impl FnMut(&[Slot], &dyn Fn(
         let slots: Vec<Slot> = spring.terms.iter().map(|term| (term.node, term.component)).collect();
         visit(&slots, &|i, j| spring::stiffness(spring, i, j));
     }
-}
-
-fn dot(a: &[Doubled], b: &[Doubled]) -> f64 {
-    std::iter::zip(a, b).fold(Doubled::zero(), |sum, (a, b)| sum + *a * *b).to_f64()
 }

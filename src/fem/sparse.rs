@@ -2,8 +2,9 @@
 
 #[cfg(test)]
 use nalgebra::DMatrix;
+use stickslip_numerics::doubled::symmetric_times;
 
-use crate::doubled::Real;
+use crate::doubled::{Doubled, Real};
 
 /// Lower triangle (with diagonal) by columns; rows ascending, none twice.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,22 +82,6 @@ impl<T: Real> SymmetricSparse<T> {
         std::iter::zip(&self.rows[range.clone()], &self.values[range]).map(|(&row, &value)| (row as usize, value))
     }
 
-    /// A x.
-    pub fn times(&self, x: &[T]) -> Vec<T> {
-        let mut y = vec![T::zero(); self.order()];
-        for column in 0..self.order() {
-            let mut sum = T::zero();
-            for (row, value) in self.column(column) {
-                sum += value * x[row];
-                if row != column {
-                    y[row] += value * x[column];
-                }
-            }
-            y[column] += sum;
-        }
-        y
-    }
-
     /// |A| |x|: the size of the terms that are summed in A x.
     pub fn times_absolute(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; self.order()];
@@ -113,7 +98,30 @@ impl<T: Real> SymmetricSparse<T> {
     }
 }
 
+impl SymmetricSparse<Doubled> {
+    /// A x.
+    pub fn times(&self, x: &[Doubled]) -> Vec<Doubled> {
+        symmetric_times(&self.column_start, &self.rows, &self.values, x)
+    }
+}
+
 impl SymmetricSparse {
+    /// A x.
+    pub fn times(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.order()];
+        for column in 0..self.order() {
+            let mut sum = 0.0;
+            for (row, value) in self.column(column) {
+                sum += value * x[row];
+                if row != column {
+                    y[row] += value * x[column];
+                }
+            }
+            y[column] += sum;
+        }
+        y
+    }
+
     /// A x and |A| |x| of N vectors x, which stand side by side, in one go through A.
     pub fn times_with_terms<const N: usize>(&self, x: &[[f64; N]]) -> Vec<[[f64; N]; 2]> {
         let mut both = vec![[[0.0; N]; 2]; self.order()];
@@ -208,5 +216,19 @@ mod tests {
         assert_eq!(both.iter().map(|[_, terms]| terms[0]).collect::<Vec<_>>(), [2.5, 8.0, 9.5]);
         assert_eq!(both.iter().map(|[sum, _]| sum[1]).collect::<Vec<_>>(), matrix.times(&[0.0, 0.0, 1.0]));
         assert_eq!(matrix.diagonal(), vec![1.0, 4.0, 3.0]);
+    }
+
+    #[test]
+    fn a_product_in_doubled_precision_keeps_what_cancels() {
+        // [2 1; 1 2] + 2⁻⁶⁰ [1 0; 0 3], times (1, −2) and (1, 1).
+        let tiny = Doubled::from((-60_f64).exp2());
+        let number = |a: f64, tail: f64| Doubled::from(a) + Doubled::from(tail) * tiny;
+        let matrix = SymmetricSparse {
+            column_start: vec![0, 2, 3],
+            rows: vec![0, 1, 1],
+            values: vec![number(2.0, 1.0), number(1.0, 0.0), number(2.0, 3.0)],
+        };
+        assert_eq!(matrix.times(&[1.0, -2.0].map(Doubled::from)), [number(0.0, 1.0), number(-3.0, -6.0)]);
+        assert_eq!(matrix.times(&[1.0, 1.0].map(Doubled::from)), [number(3.0, 1.0), number(3.0, 3.0)]);
     }
 }
