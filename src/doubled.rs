@@ -14,6 +14,8 @@ pub use stickslip_numerics::doubled::Doubled;
 pub trait Real:
     Scalar
     + Copy
+    + Send
+    + Sync
     + Zero
     + One
     + From<f64>

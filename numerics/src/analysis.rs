@@ -3,7 +3,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::simplicial::{
-    EliminationTreeRef, prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
+    prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
 };
 use faer::sparse::linalg::cholesky::supernodal::{
     factorize_supernodal_symbolic_cholesky, factorize_supernodal_symbolic_cholesky_scratch,
@@ -72,11 +72,11 @@ impl UpperPattern {
         self.start.len() - 1
     }
 
-    /// `work` with the elimination tree, the lengths of the columns of L and some room.
-    fn analysed<T>(
-        &self,
-        work: impl FnOnce(EliminationTreeRef<u32>, &[u32], &mut MemStack) -> Result<T, FaerError>,
-    ) -> Result<T, AnalysisError> {
+    /// How many entries each column of L has, and the supernodes of L if they are not too large.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn analyse(&self) -> Result<(Vec<u32>, Result<SupernodePatterns, AnalysisError>), AnalysisError> {
         let order = self.order();
         let (mut tree, mut counts) = (vec![0_i32; order], vec![0_u32; order]);
         let request = StackReq::or(
@@ -85,38 +85,19 @@ impl UpperPattern {
         );
         let mut memory = MemBuffer::try_new(request).map_err(|_| AnalysisError::OutOfMemory)?;
         let stack = MemStack::new(&mut memory);
-        let tree = prefactorize_symbolic_cholesky(&mut tree, &mut counts, self.faer(), stack);
-        Ok(work(tree, &counts, stack)?)
-    }
-
-    fn faer(&self) -> SymbolicSparseColMatRef<'_, u32> {
-        let order = self.order();
-        SymbolicSparseColMatRef::new_unsorted_checked(order, order, &self.start, None, &self.rows)
-    }
-
-    /// Entries of each column of L.
-    ///
-    /// # Errors
-    /// Out of memory.
-    pub fn column_counts(&self) -> Result<Vec<u32>, AnalysisError> {
-        self.analysed(|_, counts, _| Ok(counts.to_vec()))
-    }
-
-    /// The supernodes of L.
-    ///
-    /// # Errors
-    /// Too large; out of memory.
-    pub fn supernodes(&self) -> Result<SupernodePatterns, AnalysisError> {
-        let structure = self.analysed(|tree, counts, stack| {
-            factorize_supernodal_symbolic_cholesky(self.faer(), tree, counts, stack, Default::default())
-        })?;
-        let mut begin = structure.supernode_begin().to_vec();
-        let (mut pattern_start, mut rows) = (vec![0], Vec::new());
-        for s in 0..begin.len() {
-            rows.extend_from_slice(structure.supernode(s).pattern());
-            pattern_start.push(rows.len());
-        }
-        begin.push(self.order() as u32);
-        Ok(SupernodePatterns { begin, pattern_start, rows })
+        let pattern = SymbolicSparseColMatRef::new_unsorted_checked(order, order, &self.start, None, &self.rows);
+        let tree = prefactorize_symbolic_cholesky(&mut tree, &mut counts, pattern, stack);
+        let structure = factorize_supernodal_symbolic_cholesky(pattern, tree, &counts, stack, Default::default());
+        let patterns = structure.map_err(AnalysisError::from).map(|structure| {
+            let mut begin = structure.supernode_begin().to_vec();
+            let (mut pattern_start, mut rows) = (vec![0], Vec::new());
+            for s in 0..begin.len() {
+                rows.extend_from_slice(structure.supernode(s).pattern());
+                pattern_start.push(rows.len());
+            }
+            begin.push(order as u32);
+            SupernodePatterns { begin, pattern_start, rows }
+        });
+        Ok((counts, patterns))
     }
 }

@@ -34,12 +34,19 @@ impl Doubled {
     /// the halves of the digits multiplied one by one.
     #[inline(always)]
     fn product_as<const FUSED: bool>(a: f64, b: f64) -> Doubled {
-        let fused = |hi: f64| Doubled { hi, lo: a.mul_add(b, -hi) };
         if FUSED {
-            return fused(a * b);
+            let hi = a * b;
+            return Doubled { hi, lo: a.mul_add(b, -hi) };
         }
         let (hi, lo) = Split::new(a).times(&Split::new(b));
-        if lo.is_finite() { Doubled { hi, lo } } else { fused(hi) }
+        if lo.is_finite() { Doubled { hi, lo } } else { Doubled::large_product(a, b) }
+    }
+
+    /// A product of numbers whose halves overflow. Not inlined, so that no fused product is called for in vain beside it.
+    #[cold]
+    #[inline(never)]
+    fn large_product(a: f64, b: f64) -> Doubled {
+        Doubled::product_as::<true>(a, b)
     }
 
     #[inline(always)]

@@ -78,12 +78,10 @@ impl Factor {
             needed,
             available: available_memory().unwrap_or(u64::MAX),
         };
-        watch.progress(&format!("analysing {n} unknowns"), 0.0);
-        let supernodes = ordered.supernodes().map_err(|error| match error {
+        let (position, supernodes) = ordered.into_supernodes().map_err(|error| match error {
             AnalysisError::TooLarge => too_large(8 * (i32::MAX as u64)),
             AnalysisError::OutOfMemory => out_of_memory(),
         })?;
-        let position = ordered.into_position();
         let matrix = with_joints(k_m, &position, &scale, c, joints);
         let mut factor = Factor { supernodes, shift: 0.0, scale, position, joints };
         let needed = factor.bytes_needed();

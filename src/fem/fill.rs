@@ -5,7 +5,7 @@
 //! Among the rest each cut through the bodies reaches only the joints on its own stretch, and all of them carry rows of
 //! z. Counted for the matrix at hand.
 
-use stickslip_numerics::analysis::{AnalysisError, UpperPattern};
+use stickslip_numerics::analysis::{AnalysisError, SupernodePatterns, UpperPattern};
 use stickslip_numerics::supernodes::Supernodes;
 
 use super::assembly::Coupling;
@@ -59,7 +59,8 @@ pub struct Ordered {
     position: Vec<u32>,
     /// Multiplications of the elimination: the sum of the squared lengths of its columns of L.
     operations: f64,
-    pattern: UpperPattern,
+    /// The supernodes of L, if they are not too large.
+    patterns: Result<SupernodePatterns, AnalysisError>,
 }
 
 /// Where the analysis fails for want of memory.
@@ -80,6 +81,7 @@ impl Ordered {
         for (at, row) in elimination_order(k_m, places, watch)?.into_iter().enumerate() {
             position[row as usize] = at as u32;
         }
+        watch.progress(&format!("analysing {n} unknowns"), 0.0);
         let each = |visit: &mut dyn FnMut(u32, u32)| {
             for column in 0..n {
                 let a = position[column];
@@ -105,26 +107,21 @@ impl Ordered {
             rows[*at as usize] = row;
             *at += 1;
         });
-        let pattern = UpperPattern { start, rows };
-        let counts = pattern.column_counts().map_err(|_| out_of_memory())?;
+        let (counts, patterns) = UpperPattern { start, rows }.analyse().map_err(|_| out_of_memory())?;
         let operations = counts[..n].iter().map(|&count| f64::from(count).powi(2)).sum();
-        Ok(Ordered { position, operations, pattern })
+        Ok(Ordered { position, operations, patterns })
     }
 
     fn cheaper(self, other: Ordered) -> Ordered {
         if other.operations < self.operations { other } else { self }
     }
 
-    /// The order alone.
-    pub fn into_position(self) -> Vec<u32> {
-        self.position
-    }
-
-    /// The supernodes of L.
+    /// The position of each row of K_m, and the supernodes of L.
     ///
     /// # Errors
     /// Too large; out of memory.
-    pub fn supernodes(&self) -> Result<Supernodes, AnalysisError> {
-        Ok(Supernodes::new(self.position.len(), self.pattern.supernodes()?))
+    pub fn into_supernodes(self) -> Result<(Vec<u32>, Supernodes), AnalysisError> {
+        let supernodes = Supernodes::new(self.position.len(), self.patterns?);
+        Ok((self.position, supernodes))
     }
 }

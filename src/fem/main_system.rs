@@ -26,6 +26,7 @@ use super::outline::{Outline, refuse_torques};
 use super::refinement::{Refinement, Verdict};
 use super::repeated::Repeated;
 use super::sparse::SymmetricSparse;
+use super::threads::both;
 use crate::doubled::Doubled;
 use crate::model::pair::Joint;
 use crate::model::structure::Structure;
@@ -112,8 +113,12 @@ impl MainSystem {
         let Outline { dofs, elimination, joints, independent, repeated, f, settled } =
             Outline::new(structure, all_joints, watch)?;
         let mut stiffnesses = Stiffnesses::of_springs(structure);
-        let k = assemble_seen(structure, &dofs, &|| watch.stop(), |k| stiffnesses.take(k))?;
-        let loose = loose_motions(structure, &dofs);
+        let (k, loose) = both(
+            dofs.count(),
+            || assemble_seen(structure, &dofs, &|| watch.stop(), |k| stiffnesses.take(k)),
+            || loose_motions(structure, &dofs),
+        );
+        let k = k?;
         let no_others = loose.are_all(structure, &stiffnesses);
         let motions = loose.motions;
         let rigid = kernel::rigid_kernel(structure, &joints, &motions)?;

@@ -22,7 +22,7 @@ use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::factor::Factor;
 use super::sparse::SymmetricSparse;
-use super::threads::can_spread;
+use super::threads::can_spread_over;
 use super::watch::check_stop;
 use crate::doubled::{Doubled, Real};
 use crate::model::structure::{Component, Structure};
@@ -33,9 +33,6 @@ const IN_STEP: usize = 4;
 
 /// Columns of R between two words about progress.
 const COLUMNS: usize = 4 * IN_STEP;
-
-/// Fewer unknowns than these are not worth a second thread.
-const LARGE: usize = 2000;
 
 /// A motion that costs at most this share (squared) of the terms that its energy sums costs nothing: by so much does
 /// the rounding of the coordinates strain the elements.
@@ -138,7 +135,7 @@ impl Refinement<'_> {
         };
         // The cuts depend on the number of fields alone, so that the results do not depend on the threads.
         let groups = fields.chunks(fields.len().div_ceil(2).clamp(1, IN_STEP));
-        let groups: Vec<_> = if groups.len() > 1 && self.k.order() >= LARGE && can_spread() {
+        let groups: Vec<_> = if groups.len() > 1 && can_spread_over(self.k.order()) {
             groups.collect::<Vec<_>>().into_par_iter().map(in_step).collect()
         } else {
             groups.map(in_step).collect()

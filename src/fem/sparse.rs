@@ -4,6 +4,7 @@
 use nalgebra::DMatrix;
 use stickslip_numerics::doubled::symmetric_times;
 
+use super::threads::map_all;
 use crate::doubled::{Doubled, Real};
 
 /// Lower triangle (with diagonal) by columns; rows ascending, none twice.
@@ -39,23 +40,9 @@ impl<T: Real> SymmetricSparse<T> {
         })?;
         drop(next);
         let mut matrix = SymmetricSparse { column_start: vec![0; n + 1], rows: Vec::new(), values: Vec::new() };
-        // First pass: sort each column and sum in place; then copy to exact size.
-        let mut kept = vec![0_u32; n];
+        // First pass: sort and sum each column in place; then copy to exact size.
+        let kept = sum_columns(&start, &mut entries);
         for column in 0..n {
-            let entries = &mut entries[start[column]..start[column + 1]];
-            // Stable, so that the sum does not depend on anything but the order of the terms.
-            entries.sort_by_key(|entry| entry.0);
-            let mut last = 0;
-            for i in 1..entries.len() {
-                if entries[i].0 == entries[last].0 {
-                    let value = entries[i].1;
-                    entries[last].1 += value;
-                } else {
-                    last += 1;
-                    entries[last] = entries[i];
-                }
-            }
-            kept[column] = if entries.is_empty() { 0 } else { last as u32 + 1 };
             matrix.column_start[column + 1] = matrix.column_start[column] + kept[column];
         }
         let count = matrix.column_start[n] as usize;
@@ -185,6 +172,41 @@ impl SymmetricSparse {
     }
 }
 
+/// Columns that are worth a thread.
+const COLUMNS: usize = 4096;
+
+/// Sorts the entries of each column by their rows and sums those of one row; how many are left at its beginning.
+fn sum_columns<T: Real>(start: &[usize], entries: &mut [(u32, T)]) -> Vec<u32> {
+    let n = start.len() - 1;
+    let mut rest = entries;
+    let strips = (0..n).step_by(COLUMNS).map(|first| {
+        let bounds = &start[first..=n.min(first + COLUMNS)];
+        let (strip, others) = std::mem::take(&mut rest).split_at_mut(bounds[bounds.len() - 1] - bounds[0]);
+        rest = others;
+        (bounds, strip)
+    });
+    let kept = map_all(strips.collect(), 1, |(bounds, strip)| -> Vec<u32> {
+        bounds.windows(2).map(|column| sum_column(&mut strip[column[0] - bounds[0]..column[1] - bounds[0]])).collect()
+    });
+    kept.concat()
+}
+
+fn sum_column<T: Real>(entries: &mut [(u32, T)]) -> u32 {
+    // Stable, so that the sum does not depend on anything but the order of the terms.
+    entries.sort_by_key(|entry| entry.0);
+    let mut last = 0;
+    for i in 1..entries.len() {
+        if entries[i].0 == entries[last].0 {
+            let value = entries[i].1;
+            entries[last].1 += value;
+        } else {
+            last += 1;
+            entries[last] = entries[i];
+        }
+    }
+    if entries.is_empty() { 0 } else { last as u32 + 1 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -228,7 +250,8 @@ mod tests {
             rows: vec![0, 1, 1],
             values: vec![number(2.0, 1.0), number(1.0, 0.0), number(2.0, 3.0)],
         };
-        assert_eq!(matrix.times(&[1.0, -2.0].map(Doubled::from)), [number(0.0, 1.0), number(-3.0, -6.0)]);
-        assert_eq!(matrix.times(&[1.0, 1.0].map(Doubled::from)), [number(3.0, 1.0), number(3.0, 3.0)]);
+        let (x, y) = ([1.0, -2.0].map(Doubled::from), [1.0, 1.0].map(Doubled::from));
+        assert_eq!(matrix.times(&x), [number(0.0, 1.0), number(-3.0, -6.0)]);
+        assert_eq!(matrix.times(&y), [number(3.0, 1.0), number(3.0, 3.0)]);
     }
 }

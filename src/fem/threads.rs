@@ -1,13 +1,18 @@
-//! Whether work can be spread over threads.
+//! Work that is spread over threads, with the same results on any number of them.
 
 use std::error::Error;
 use std::sync::OnceLock;
+
+use rayon::prelude::*;
 
 use crate::model::memory::address_space_left;
 
 /// Address space that a thread takes at most for its stack and its share of the heap (glibc reserves 64 MiB and aligns
 /// them to as many).
 const BYTES_PER_THREAD: f64 = 136.0 * 1024.0 * 1024.0;
+
+/// Fewer unknowns than these are not worth a second thread.
+const LARGE: usize = 2000;
 
 /// Whether the pool of threads exists; makes it at the first call. Where the system refuses or the address space is
 /// limited (`ulimit -v`), work goes on on one thread, with the same results. Small work should not ask.
@@ -24,4 +29,23 @@ pub fn can_spread() -> bool {
             Err(error) => error.source().is_none(),
         }
     })
+}
+
+/// `work` on each item, in their order; so many of them are worth a thread of their own.
+pub fn map_all<I: Send, T: Send>(items: Vec<I>, worth: usize, work: impl Fn(I) -> T + Sync + Send) -> Vec<T> {
+    if items.len() >= 2 * worth && can_spread() {
+        items.into_par_iter().with_min_len(worth).map(work).collect()
+    } else {
+        items.into_iter().map(work).collect()
+    }
+}
+
+/// Whether work on so many unknowns is worth threads, and there are some.
+pub fn can_spread_over(unknowns: usize) -> bool {
+    unknowns >= LARGE && can_spread()
+}
+
+/// Two things at once where there are so many unknowns that it is worth it.
+pub fn both<A: Send, B: Send>(unknowns: usize, a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    if can_spread_over(unknowns) { rayon::join(a, b) } else { (a(), b()) }
 }

@@ -174,11 +174,12 @@ impl Membrane<'_> {
 
     /// (∂N_i/∂x, ∂N_i/∂y) of all functions and det J at (ξ, η).
     fn gradients<T: Real>(&self, at: [f64; 2]) -> ([[T; 2]; MOST], T) {
-        let j = self.jacobian::<T>(at);
-        let det = determinant(&j);
         let mut gradients = self.shape().gradients(at);
+        let j = self.jacobian_of(&gradients);
+        let det = determinant(&j);
+        let inverse = T::one() / det;
         for natural in &mut gradients[..self.nodes.len()] {
-            *natural = in_plane(&j, det, *natural);
+            *natural = in_plane(&j, inverse, *natural);
         }
         if self.incompatible {
             let centre = self.jacobian::<T>(self.shape().centre());
@@ -190,9 +191,14 @@ impl Membrane<'_> {
 
     /// J: (∂x/∂ξ, ∂y/∂ξ), (∂x/∂η, ∂y/∂η) at (ξ, η).
     fn jacobian<T: Real>(&self, at: [f64; 2]) -> [[T; 2]; 2] {
+        self.jacobian_of(&self.shape().gradients(at))
+    }
+
+    /// The same from (∂N_i/∂ξ, ∂N_i/∂η) there.
+    fn jacobian_of<T: Real>(&self, gradients: &[[T; 2]; MOST]) -> [[T; 2]; 2] {
         // Coordinates from the first node: the place in the plane costs no digits.
         let mut j = [[T::zero(); 2]; 2];
-        for (n, node) in self.shape().gradients::<T>(at).iter().zip(&self.nodes) {
+        for (n, node) in gradients.iter().zip(&self.nodes) {
             for a in 0..2 {
                 for b in 0..2 {
                     j[a][b] += n[a] * T::difference(node[b], self.nodes[0][b]);
