@@ -13,6 +13,7 @@ use super::loose::Motion;
 use super::main_system::MainSystem;
 use super::refinement::{Field, Verdict};
 use super::sparse::SymmetricSparse;
+use super::threads::both;
 use crate::doubled::Real;
 use crate::model::structure::Structure;
 use crate::model::vector::length;
@@ -36,15 +37,16 @@ impl MainSystem {
         self.doubled = None;
         self.r = self.factor.schur(d);
         kernel::project(&mut self.r, &self.z);
-        self.take_loads();
-        self.refine_if_lost(structure, watch)
+        self.take_loads(structure, watch)
     }
 
-    /// Where rounding may cost too much, goes on in doubled precision: with R only where it is measured to be wrong, for the
-    /// field of a load may bend the whole structure where those of the joints do not.
-    pub(super) fn refine_if_lost(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
-        self.amplification = self.worst_amplification();
-        if !loses(self.amplification, self.elimination.masters()) {
+    /// RF from F. Where rounding may cost too much, in doubled precision; R too, but only where it is measured to be wrong,
+    /// for the field of a load may bend the whole structure where those of the joints do not.
+    pub(super) fn take_loads(&mut self, structure: &Structure, watch: &dyn Watch) -> Result<(), MainSystemError> {
+        let masters = self.elimination.masters();
+        (self.rf, self.amplification) = both(masters, || self.condensed_loads(), || self.worst_amplification());
+        self.balance_loads();
+        if !loses(self.amplification, masters) {
             return Ok(());
         }
         let is_wrong = !self.stiffness_is_right(structure, watch)?;
@@ -67,14 +69,13 @@ impl MainSystem {
         self.take_loads_doubled(structure, watch)
     }
 
-    /// RF from F by the f64 factor.
-    pub(super) fn take_loads(&mut self) {
+    /// RF from F by the f64 factor, not yet balanced.
+    fn condensed_loads(&self) -> Vec<DVector<f64>> {
         let driving = self.driving_forces();
         let loads: Vec<Vec<f64>> = driving.iter().map(|f| on_masters(&self.elimination, f)).collect();
         let condensed = self.factor.project(&loads);
         let rf = std::iter::zip(&driving, condensed.column_iter());
-        self.rf = rf.map(|(f, column)| column - DVector::from_vec(on_joints(&self.elimination, f))).collect();
-        self.balance_loads();
+        rf.map(|(f, column)| column - DVector::from_vec(on_joints(&self.elimination, f))).collect()
     }
 
     /// RF from F in doubled precision.

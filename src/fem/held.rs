@@ -52,13 +52,13 @@ impl Kinematics {
         }
         let closed = vec![0.0; elimination.joints()];
         let mut held = Vec::with_capacity(f.len());
-        for (f, settled) in std::iter::zip(f, settled) {
-            let settled = settled.as_deref();
-            let driving = driving_force(&k, f, settled);
-            let mut v = on_masters(elimination, &driving);
-            factor.solve(&mut v);
-            let mut u = elimination.expand(&v, &closed);
-            for (u, settled) in std::iter::zip(&mut u, settled.unwrap_or_default()) {
+        let driving: Vec<_> =
+            std::iter::zip(f, settled).map(|(f, settled)| driving_force(&k, f, settled.as_deref())).collect();
+        let mut solved: Vec<Vec<f64>> = driving.iter().map(|driving| on_masters(elimination, driving)).collect();
+        factor.solve_many(&mut solved);
+        for (((f, settled), driving), v) in f.iter().zip(settled).zip(&driving).zip(&solved) {
+            let mut u = elimination.expand(v, &closed);
+            for (u, settled) in std::iter::zip(&mut u, settled.as_deref().unwrap_or_default()) {
                 *u += settled;
             }
             let mut nodal = k.times(&u);
@@ -69,7 +69,7 @@ impl Kinematics {
                 *nodal -= f;
             }
             let forces = DVector::from_vec(on_joints(elimination, &nodal));
-            let size = largest_force(dofs, &driving, &forces);
+            let size = largest_force(dofs, driving, &forces);
             held.push(HeldForces { forces, size });
         }
         Ok(Some(held))

@@ -189,8 +189,7 @@ impl MainSystem {
         if system.doubled.is_some() {
             system.take_loads_doubled(structure, &Quiet)?;
         } else {
-            system.take_loads();
-            system.refine_if_lost(structure, &Quiet)?;
+            system.take_loads(structure, &Quiet)?;
         }
         system.seconds = Seconds { condense: clock.elapsed().as_secs_f64(), ..Seconds::default() };
         Ok(system)

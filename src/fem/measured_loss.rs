@@ -1,7 +1,7 @@
 //! Whether the R of the f64 factor can be believed where an estimate of its rounding cannot tell: measured on a few
 //! dislocations, against K in doubled precision.
 //!
-//! The estimate of [`MainSystem::refine_if_lost`] counts the rounding of every term of uᵀ K u; in plates of long
+//! The estimate of [`MainSystem::take_loads`] counts the rounding of every term of uᵀ K u; in plates of long
 //! elements those are large, and the errors of neighbours cancel. What counts is what R is used for: rows of R z, in
 //! which every zero test allows for rounding of the size √R_jj Σ_k √R_kk |z_k| (method §4, "Zero").
 

@@ -9,7 +9,7 @@ mod terminal;
 use std::io::{self, IsTerminal, Write};
 
 use crate::session::journal::Journal;
-use crate::session::{Next, Session, places};
+use crate::session::{Next, Session, introduction, places};
 use crate::view::status;
 use crate::view::style::{Role, Style};
 
@@ -83,6 +83,9 @@ fn greet(session: &Session, style: &Style, out: &mut dyn Write) -> io::Result<()
     writeln!(out, "{}", style.fit(&style.text(&title), style.width))?;
     if let Some(answer) = session.answer() {
         writeln!(out, "{}", status::line(answer, None, &scenario.units, style))?;
+    }
+    for text in introduction(scenario) {
+        style.paragraph(out, Role::Plain, &text)?;
     }
     writeln!(out, "`help` lists the commands, Tab completes, Ctrl-D leaves.")?;
     if let Err(why) = journal() {

@@ -34,6 +34,7 @@ pub use crate::answer::{diagram, record as results};
 pub use crate::explain::remedy::Remedies;
 use crate::export::table::Table;
 use crate::model::parameter::ParameterValues;
+use crate::model::plausible;
 use crate::model::problem::Problem;
 use crate::model::scenario::Scenario;
 use crate::path::record::PathRecord;
@@ -104,6 +105,12 @@ pub fn diagnose(scenario: Scenario, watch: &dyn Watch) -> Result<Diagnosis, Comm
         let notes = scenario.notes.into_iter().chain(left_out).collect();
         Ok::<_, CommandError>(Diagnosis { title: scenario.title, notes, loose, warnings })
     })?
+}
+
+/// What is said of a scenario as soon as it is loaded: notes of its file, and what is odd enough to change every answer.
+pub fn introduction(scenario: &Scenario) -> Vec<String> {
+    let warnings = plausible::said_at_load(scenario).into_iter().map(|warning| format!("warning: {warning}"));
+    scenario.notes.iter().cloned().chain(warnings).collect()
 }
 
 /// A scenario that is being worked on.

@@ -11,6 +11,7 @@ use crate::answer::attempt::Attempt;
 use crate::answer::record::{Answer, OutcomeKind, PairState, PolygonRecord, Start, State};
 use crate::contact::polygon::degrees;
 use crate::model::parameter::ParameterValues;
+use crate::model::plausible;
 use crate::model::scenario::{Scenario, Source};
 use crate::model::units::Units;
 use crate::model::uses::Redone;
@@ -281,6 +282,7 @@ pub fn write(
         rows.extend(labelled("attempts", answer.attempts.iter().map(attempt)));
     }
     rows.extend(labelled("notes", answer.notes.iter().cloned()));
+    rows.extend(labelled("warnings", plausible::said_at_load(scenario).into_iter()));
     if !parameters.is_empty() {
         let value = |(name, value): (&String, &f64)| {
             // what is computed has no digits that a user gave

@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // every test binary uses its own part
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use serde_json::Value;
 use stickslip::model::embedded;
 use stickslip::model::load::load_text;
@@ -46,4 +48,20 @@ pub fn text(session: &mut Session, line: &str) -> String {
 pub fn report(session: &mut Session, line: &str) -> Result<Value, String> {
     let mut answer: Value = serde_json::from_str(&given(session, line, Format::JsonLines)?).expect("JSON");
     Ok(answer["report"].take())
+}
+
+/// `work` on all items, on as many threads as there are cores; not on those of the program's own pool, for which the work
+/// of a session may wait.
+pub fn side_by_side<T: Sync>(items: &[T], work: impl Fn(&T) + Sync) {
+    let next = AtomicUsize::new(0);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some(item) = items.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    work(item);
+                }
+            });
+        }
+    });
 }

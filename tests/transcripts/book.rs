@@ -20,7 +20,8 @@ use std::process::{Command, Output};
 
 use jsonc_parser::ParseOptions;
 use jsonc_parser::cst::CstRootNode;
-use rayon::prelude::*;
+
+use super::lines::side_by_side;
 
 /// A fenced block of a page: the words after the fence, and its lines.
 struct Block {
@@ -208,7 +209,7 @@ fn every_page_is_in_the_contents_and_every_link_leads_somewhere() {
 fn what_the_pages_show_is_what_happens() {
     let pages = pages();
     assert!(pages.len() >= 15, "{}", pages.len());
-    pages.par_iter().for_each(|page| try_page(page));
+    side_by_side(&pages, |page| try_page(page));
 }
 
 /// The texts `stickslip-WORD/NUMBER` of a file.

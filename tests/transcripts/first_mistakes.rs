@@ -45,6 +45,15 @@ fn bodies_and_nodes_that_only_contact_holds_have_names() {
 }
 
 #[test]
+fn a_contact_given_twice_is_told_with_the_status() {
+    let pad = r#"{"id": "pad", "node": "n", "against": "ground", "normal": [0, 1], "friction": "f"}"#;
+    let twice = BEARING.replace(pad, &format!("{pad}, {}", pad.replace("pad", "shoe")));
+    let words = |scenario: &str| text(&mut read(scenario), "status").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words(&twice).contains("warnings contacts[1]: `shoe` has the nodes and the normal of `pad`"));
+    assert!(!words(BEARING).contains("warnings"));
+}
+
+#[test]
 fn after_a_history_what_is_not_of_it_says_so_and_pictures_have_its_loads() {
     let mut session = read(BEARING);
     // √(100² + 30²)

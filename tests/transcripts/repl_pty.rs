@@ -37,6 +37,26 @@ fn tab_completes_and_hints_are_shown() {
 }
 
 #[test]
+fn what_is_odd_in_a_file_is_said_before_the_first_prompt() {
+    let folder = folder();
+    let pad =
+        |id: &str| format!(r#"{{"id": "{id}", "node": "n", "against": "ground", "normal": [0, 1], "friction": 0.3}}"#);
+    let text = format!(
+        r#"{{"format": "stickslip/1", "title": "pad", "nodes": {{"n": [0, 0]}},
+            "springs": [{{"at": "n", "direction": [1, 0], "stiffness": 10}}], "contacts": [{}, {}],
+            "loads": {{"w": {{"items": [{{"point": {{"at": "n", "force": [1, -10]}}}}]}}}}}}"#,
+        pad("pad"),
+        pad("shoe")
+    );
+    std::fs::write(folder.path().join("pad.json"), text).unwrap();
+    let mut terminal = Terminal::start(folder.path(), "xterm-256color", &["pad.json"]);
+    terminal.wait("the warning", |screen| screen.contains("warning: contacts[1]: `shoe` has the nodes"));
+    terminal.prompt();
+    terminal.send("quit\r");
+    assert_eq!(terminal.end(), 0);
+}
+
+#[test]
 fn the_history_comes_back_in_the_next_run_and_can_be_searched() {
     let folder = folder();
     let mut terminal = Terminal::start(folder.path(), "xterm-256color", &[]);

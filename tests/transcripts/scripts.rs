@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
 use stickslip::session::{Format, Output, script};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 
+use super::lines::side_by_side;
 use super::{refused, session, shown};
 
 /// Runs a script; what it shows, its failures, its status.
@@ -75,7 +75,7 @@ fn the_scripts_that_come_along_hold_and_repeat_to_the_byte() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/scripts");
     let paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     assert!(paths.len() >= 4);
-    paths.par_iter().for_each(|path| {
+    side_by_side(&paths, |path| {
         let text = fs::read_to_string(path).unwrap();
         for format in [Format::Text, Format::JsonLines] {
             let (first, failures, status) = replay(&text, format, false);

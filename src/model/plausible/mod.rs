@@ -62,7 +62,7 @@ pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
 /// What is said as soon as a scenario is loaded: odd enough to change every answer.
 pub fn said_at_load(scenario: &Scenario) -> Vec<String> {
     let Source::Structure(structure) = &scenario.source else { return Vec::new() };
-    let told = |Warning { path, message, help }: Warning| format!("warning: {path}: {message}: {help}");
+    let told = |Warning { path, message, help }: Warning| format!("{path}: {message}: {help}");
     twins::of_contacts(scenario, structure).into_iter().map(told).collect()
 }
 

@@ -5,10 +5,10 @@ use std::io::{self, Write};
 use clap::Args;
 use serde::Serialize;
 
-use crate::model::{embedded, plausible};
+use crate::model::embedded;
 use crate::session::language::candidates::Candidate;
 use crate::session::language::command::{Action, Command};
-use crate::session::{CommandError, Next, Output, Session, Setup, load};
+use crate::session::{CommandError, Next, Output, Session, Setup, introduction, load};
 use crate::view::style::Style;
 
 /// Load a scenario, from a file or an embedded one by its name, and solve it
@@ -35,8 +35,7 @@ impl Action for Load {
         let scenario = load::scenario(&self.scenario, io.watch)?;
         let mut notes = vec![format!("{}: {}", scenario.name, scenario.title)];
         notes.extend(scenario.description.clone());
-        notes.extend(scenario.notes.iter().cloned());
-        notes.extend(plausible::said_at_load(&scenario));
+        notes.extend(introduction(&scenario));
         session.change_noting(Setup::of(scenario), text, &notes, io)?;
         Ok(Next::Continue)
     }

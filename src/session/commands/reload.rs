@@ -6,12 +6,11 @@ use std::sync::Arc;
 use clap::{Args, ValueEnum};
 
 use crate::model::load::at_values;
-use crate::model::plausible;
 use crate::model::scenario::{Scenario, Source};
 use crate::session::language::command::{Action, Command};
 use crate::session::language::setting::{RULES, rules_of};
 use crate::session::language::tokens;
-use crate::session::{CommandError, Next, Output, Session, Setup, load};
+use crate::session::{CommandError, Next, Output, Session, Setup, introduction, load};
 use crate::text::file::reason;
 use crate::text::number::short;
 
@@ -109,8 +108,7 @@ impl Session {
         if !carried.kept.is_empty() {
             notes.push(format!("kept: {}", carried.kept.join(", ")));
         }
-        notes.extend(carried.setup.scenario.notes.iter().cloned());
-        notes.extend(plausible::said_at_load(&carried.setup.scenario));
+        notes.extend(introduction(&carried.setup.scenario));
         self.change_noting(carried.setup, text, &notes, io)
     }
 
