@@ -21,6 +21,9 @@ const ANSWERED: f64 = 1e-36;
 /// Far more steps than there are motions that the preconditioner does not know.
 const MOST_STEPS: usize = 400;
 
+/// What the main system answers, and what is left of the energy of the error.
+pub type Solution = (Vec<Doubled>, f64);
+
 /// One right side on the way to its solution. Of a residual r, z is what the preconditioner makes of it.
 pub struct Descent {
     v: Vec<Doubled>,
@@ -98,8 +101,8 @@ impl Descent {
         scale_and_add(&mut self.direction, turn, z);
     }
 
-    /// The solution and what is left of the energy of its error; `None` if it did not converge.
-    pub fn solution(self) -> Option<(Vec<Doubled>, f64)> {
+    /// The solution; `None` if it did not converge.
+    pub fn solution(self) -> Option<Solution> {
         let (error, v) = self.best;
         (error <= ANSWERED * self.first).then_some((v, error))
     }

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use stickslip_numerics::doubled::dot;
 
 use super::assembly::{given_entries, on_joints, on_masters};
-use super::descent::Descent;
+use super::descent::{Descent, Solution};
 use super::dof::Dofs;
 use super::element::{Slot, slots, spring, stiffness};
 use super::elimination::Elimination;
@@ -94,11 +94,7 @@ impl Refinement<'_> {
     ///
     /// # Errors
     /// Interrupted.
-    fn solve(
-        &self,
-        right: Vec<Vec<Doubled>>,
-        watch: &dyn Watch,
-    ) -> Result<Option<Vec<(Vec<Doubled>, f64)>>, MainSystemError> {
+    fn solve(&self, right: Vec<Vec<Doubled>>, watch: &dyn Watch) -> Result<Option<Vec<Solution>>, MainSystemError> {
         let z = self.precondition(right.iter().map(Vec::as_slice));
         let mut all: Vec<Descent> = std::iter::zip(right, z).map(|(right, z)| Descent::new(right, z)).collect();
         loop {
@@ -171,11 +167,7 @@ impl Refinement<'_> {
     ///
     /// # Errors
     /// Interrupted.
-    pub fn displacements(
-        &self,
-        field: Field,
-        watch: &dyn Watch,
-    ) -> Result<Option<(Vec<Doubled>, f64)>, MainSystemError> {
+    pub fn displacements(&self, field: Field, watch: &dyn Watch) -> Result<Option<Solution>, MainSystemError> {
         Ok(self.each(&[field], watch, |_, u, error| (u, error))?.and_then(|mut all| all.pop()))
     }
 

@@ -42,8 +42,8 @@ impl<T: Real> SymmetricSparse<T> {
         let mut matrix = SymmetricSparse { column_start: vec![0; n + 1], rows: Vec::new(), values: Vec::new() };
         // First pass: sort and sum each column in place; then copy to exact size.
         let kept = sum_columns(&start, &mut entries);
-        for column in 0..n {
-            matrix.column_start[column + 1] = matrix.column_start[column] + kept[column];
+        for (column, kept) in kept.iter().enumerate() {
+            matrix.column_start[column + 1] = matrix.column_start[column] + kept;
         }
         let count = matrix.column_start[n] as usize;
         matrix.rows.reserve_exact(count);
