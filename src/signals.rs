@@ -259,7 +259,14 @@ pub fn is_dumb() -> bool {
     std::env::var_os("TERM").is_none_or(|term| term.is_empty() || term == "dumb")
 }
 
-/// Columns of the terminal now; 80 where it does not say.
+/// Columns and rows of the terminal now; 80 and 24 where it does not say, or says that it has none.
+pub fn terminal_size() -> (usize, usize) {
+    let (columns, rows) = crossterm::terminal::size().unwrap_or_default();
+    let known = |size: u16, usual: usize| if size == 0 { usual } else { usize::from(size) };
+    (known(columns, 80), known(rows, 24))
+}
+
+/// Columns of the terminal now, 20 at least.
 pub fn terminal_width() -> usize {
-    crossterm::terminal::size().map_or(80, |(columns, _)| usize::from(columns).max(20))
+    terminal_size().0.max(20)
 }

@@ -136,6 +136,8 @@ pub struct Pace(Arc<Mutex<Wait>>);
 struct Wait {
     /// Since when the editor has had nothing to do but wait for a key.
     idle_since: Option<Instant>,
+    /// How long it waited for the first one of the line.
+    first: Option<Duration>,
     /// How long it waited for the last one.
     last: Option<Duration>,
 }
@@ -143,10 +145,23 @@ struct Wait {
 /// No hand is faster.
 const BY_HAND: Duration = Duration::from_millis(5);
 
+/// Nobody reads an answer and types faster.
+const READING: Duration = Duration::from_millis(250);
+
 impl Pace {
     /// Whether the last line came faster than by hand.
     pub fn is_burst(&self) -> bool {
         self.wait().last.is_some_and(|wait| wait < BY_HAND)
+    }
+
+    /// A new line.
+    pub fn begin(&self) {
+        self.wait().first = None;
+    }
+
+    /// Whether the line began so late that what stands above it may have been read.
+    pub fn began_late(&self) -> bool {
+        self.wait().first.is_some_and(|wait| wait >= READING)
     }
 
     fn wait(&self) -> MutexGuard<'_, Wait> {
@@ -163,6 +178,7 @@ impl ConditionalEventHandler for Pace {
     fn handle(&self, _: &Event, _: u16, _: bool, _: &EventContext<'_>) -> Option<Cmd> {
         let mut wait = self.wait();
         wait.last = wait.idle_since.map(|since| since.elapsed());
+        wait.first = wait.first.or(wait.last);
         wait.idle_since = Some(Instant::now());
         None
     }

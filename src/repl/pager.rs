@@ -10,7 +10,7 @@ use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifier
 use crossterm::terminal;
 use unicode_width::UnicodeWidthChar;
 
-use crate::signals::{self, Signals};
+use crate::signals::{self, Signals, terminal_size};
 
 /// How long the keys of a paste may be apart.
 const BURST: Duration = Duration::from_millis(10);
@@ -20,9 +20,8 @@ const BURST: Duration = Duration::from_millis(10);
 /// What was typed ahead or pasted is no answer to that question: then everything is shown at once and the text is
 /// given back, for the prompt.
 pub fn show(text: &str, out: &mut dyn Write, signals: &Signals) -> io::Result<String> {
-    let (columns, rows) = terminal::size().unwrap_or((80, 24));
-    let columns = usize::from(columns).max(1);
-    let page = usize::from(rows).saturating_sub(1).max(2);
+    let (columns, rows) = terminal_size();
+    let page = rows.saturating_sub(1).max(2);
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
     let height = |line: &str| visible(line).div_ceil(columns).max(1);
     let mut room = page;

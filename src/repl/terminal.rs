@@ -48,6 +48,9 @@ pub fn run(session: &mut Session, style: Style, signals: &Signals) -> io::Result
             style.width = terminal_width();
         }
         input.show(&line);
+        if !line.came_with_others && input.pace.began_late() {
+            session.attend();
+        }
         let by_hand = input.is_by_hand();
         let (result, typed) = execute(session, &line.text, style, signals, by_hand, input.pasted);
         input.type_ahead(&typed);
@@ -165,6 +168,7 @@ impl Input {
             helper.vocabulary = session.vocabulary();
         }
         let prompt = (self.prompt, self.coloured_prompt.as_str());
+        self.pace.begin();
         let raw = signals.raw();
         let read = self.editor.readline_with_initial(&prompt, (&self.begun.0, &self.begun.1));
         drop(raw);

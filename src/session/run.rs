@@ -55,6 +55,11 @@ impl Session {
         result
     }
 
+    /// Somebody has seen what the last line said: what follows is meant for the session as it is.
+    pub fn attend(&mut self) {
+        self.missing = Missing::Nothing;
+    }
+
     pub(super) fn run_parsed(
         &mut self,
         text: &str,

@@ -57,6 +57,37 @@ fn what_is_odd_in_a_file_is_said_before_the_first_prompt() {
 }
 
 #[test]
+fn a_terminal_that_says_no_size_has_eighty_columns() {
+    let folder = folder();
+    let mut terminal = Terminal::start(folder.path(), "xterm-256color", &[]);
+    terminal.prompt();
+    terminal.forget_size();
+    terminal.send("status\r");
+    // the widest line of the status
+    let screen = terminal.wait("the answer", |screen| screen.contains("LCP of 18"));
+    let widest = screen.lines().map(|line| line.chars().count()).max();
+    assert!(widest.is_some_and(|widest| (61..=80).contains(&widest)), "{screen}");
+    terminal.send("quit\r");
+    assert_eq!(terminal.end(), 0);
+}
+
+/// Lines that a program types come at once; a pause before one says that the answer above it has been seen.
+#[test]
+fn a_failed_load_locks_what_comes_with_it_and_not_what_is_typed_later() {
+    let folder = folder();
+    let mut terminal = Terminal::start(folder.path(), "xterm-256color", &[]);
+    terminal.prompt();
+    terminal.send("load nosuch\rstatus\r");
+    terminal.wait("the refusal", |screen| screen.contains("not done: the `load` before it failed"));
+    terminal.prompt();
+    std::thread::sleep(Duration::from_millis(400));
+    terminal.send("status\r");
+    terminal.wait("the answer", |screen| screen.contains("LCP of 18"));
+    terminal.send("quit\r");
+    assert_eq!(terminal.end(), 0);
+}
+
+#[test]
 fn the_history_comes_back_in_the_next_run_and_can_be_searched() {
     let folder = folder();
     let mut terminal = Terminal::start(folder.path(), "xterm-256color", &[]);
