@@ -156,6 +156,11 @@ impl Pair {
         !self.slides_on_ground && matches!(self.weights[..], [(_, 1.0)] | [(_, 1.0), (_, -1.0)])
     }
 
+    /// Whether the ground is on its first side.
+    pub fn is_on_ground(&self) -> bool {
+        self.weights.iter().all(|(_, weight)| *weight >= 0.0)
+    }
+
     /// A vector of the plane of contact, from its components along the tangents.
     pub fn along_tangents(&self, components: &[f64]) -> [f64; 3] {
         let parts = components.iter().zip(&self.tangents);

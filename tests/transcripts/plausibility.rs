@@ -268,6 +268,28 @@ fn contacts_given_twice() {
     assert_eq!(twice(block(), &[edge("block.left")]), []);
 }
 
+/// Of two blocks on one another the outer sides are named: each lies a whole block inside the other. An interference fit
+/// is none of these.
+#[test]
+fn sides_that_look_away_from_each_other() {
+    let blocks = |contact: Value| {
+        let block = |id: &str, y: i32| json!({ "id": id, "origin": [0, y], "size": [4, 2], "divisions": [4, 2], "thickness": 1, "material": "m", "plane": "stress" });
+        let held = ["low[0,1]", "low[4,1]", "up[0,1]", "up[4,1]"].map(|at| json!({ "at": at, "fixed": ["x", "y"] }));
+        json!({ "format": "stickslip/1", "title": "blocks", "materials": { "m": { "E": 3e4, "nu": 0.2 } },
+            "plates": [block("low", 0), block("up", 2)],
+            "supports": held,
+            "contacts": [contact], "loads": { "w": { "items": [{ "traction": { "edge": "up.top", "value": [0, -1] } }] } } })
+    };
+    let away =
+        blocks(json!({ "id": "j", "edge": "up.top", "against": "low.bottom", "gap": "geometry", "friction": 0.3 }));
+    only(&away, "contacts[0]", &["the sides of `j` begin inside one another", "look away from each other"]);
+    let facing =
+        blocks(json!({ "id": "j", "edge": "up.bottom", "against": "low.top", "gap": "geometry", "friction": 0.3 }));
+    assert_eq!(warnings(&facing).len(), 0);
+    let fit = blocks(json!({ "id": "j", "edge": "up.bottom", "against": "low.top", "gap": -0.001, "friction": 0.3 }));
+    assert_eq!(warnings(&fit).len(), 0);
+}
+
 #[test]
 fn pairs_that_no_case_presses() {
     // A bearing the wrong way round on a level beam: its weight opens it.

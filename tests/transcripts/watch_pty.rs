@@ -77,7 +77,10 @@ fn a_watched_file_is_solved_when_it_is_saved_and_the_line_stays() {
     save(folder.path(), "");
     thread::sleep(Duration::from_millis(200));
     save(folder.path(), &block("four", "0.8"));
-    terminal.wait("the one answer", |screen| screen.matches("b.json read again").count() == 3);
+    // the first lines may have left the screen
+    let below =
+        |screen: &str| screen.rsplit_once("b.json is as it was").map_or(String::new(), |(_, below)| below.to_owned());
+    terminal.wait("the one answer", |screen| below(screen).matches("b.json read again").count() == 1);
     let screen = terminal.ask("watch off", "no file is watched");
     assert_eq!(screen.matches("the file is empty").count(), 0, "{screen}");
     terminal.send("quit\r");

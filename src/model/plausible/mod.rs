@@ -3,6 +3,7 @@
 
 mod loads;
 pub mod normals;
+mod overlaps;
 mod stiffness;
 mod twins;
 mod units;
@@ -49,6 +50,7 @@ pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
             warnings.extend(stiffness::weights(scenario, structure, file));
             warnings.extend(stiffness::sections(scenario, structure, file));
             warnings.extend(normals::upside_down(scenario, structure));
+            warnings.extend(overlaps::of_contacts(scenario, structure));
             warnings.extend(twins::of_contacts(scenario, structure));
             warnings.extend(loads::of_structure(scenario, structure, file));
         }

@@ -8,6 +8,7 @@ use clap::Args;
 use crate::answer::diagram::{Diagram, Internal};
 use crate::answer::record::{MemberForces, NodeDisplacement, PairState, PlainSolution, Reaction};
 use crate::export::json as json_export;
+use crate::model::pair::Pair;
 use crate::model::quantity::{Meaning, entry};
 use crate::model::scenario::Source;
 use crate::session::language::command::{Action, Command};
@@ -236,7 +237,13 @@ impl Session {
         io.show(reactions, |out, style| {
             self.write_history_place(out, style)?;
             let moment = self.moment_about_origin(reactions);
-            view::reactions::write(out, reactions, moment, &self.now.scenario.units, style)
+            view::reactions::write(out, reactions, moment, &self.now.scenario.units, style)?;
+            let on_ground = matches!(&self.now.scenario.source, Source::Structure(structure)
+                if structure.pairs.iter().any(Pair::is_on_ground));
+            if on_ground {
+                style.paragraph(out, Role::Muted, "what contact with the ground carries is not among them: `pairs`")?;
+            }
+            Ok(())
         })?;
         Ok(())
     }
