@@ -53,6 +53,22 @@ pub struct BalancedState<'a> {
     pub shared: Option<DVector<f64>>,
 }
 
+impl BalancedState<'_> {
+    fn joint_terms(&self) -> JointTerms<'_> {
+        JointTerms { dislocations: Some(&self.terms), shared: self.shared.as_ref() }
+    }
+}
+
+/// The magnitudes of the terms that numbers of the joints are sums of: what cancels leaves their rounding, however small it
+/// is.
+#[derive(Clone, Copy, Default)]
+pub struct JointTerms<'a> {
+    /// Of the mutual displacements of all joints.
+    pub dislocations: Option<&'a DVector<f64>>,
+    /// Of forces that were chosen among those that self-stress leaves free, 0 of the others.
+    pub shared: Option<&'a DVector<f64>>,
+}
+
 /// The largest residual relative to the forces that meet there and to what rounding may leave.
 fn largest_share(residual: &[f64], scale: &[f64], rounding: &[f64]) -> f64 {
     let shares = residual.iter().zip(scale.iter().zip(rounding)).map(|(r, (scale, rounding))| {
@@ -157,7 +173,7 @@ impl MainSystem {
     /// The residuals of compatibility and equilibrium as for an answer that is shown.
     fn residuals(&self, structure: &Structure, state: &BalancedState<'_>, u: &Displacements) -> f64 {
         self.compatibility_residual(u, &state.dislocation, &state.terms)
-            + self.equilibrium_residual(structure, u, (state.force, state.shared.as_ref()), state.factors)
+            + self.equilibrium_residual(structure, u, &state.joint_terms(), state.force, state.factors)
     }
 
     /// K u and Σ_k |K_ik||u_k| of each of up to N displacements of the base dofs.
@@ -175,7 +191,7 @@ impl MainSystem {
             terms = self.k.times_absolute(&sizes);
         }
         let residual = self.unheld(self.minus_loads(forces, state.force, state.factors));
-        let rounding = self.rounding_of(u, &terms, 0.0, state.factors);
+        let rounding = self.rounding_of(u, &terms, 0.0, state.factors, Some(&state.terms));
         let rounding = self.handed_on(self.with_shared(rounding, state.shared.as_ref()));
         let nothing = vec![0.0; residual.len()];
         let bound = largest_share(&residual, &nothing, &rounding);
@@ -193,18 +209,18 @@ impl MainSystem {
     }
 
     /// Largest |K u − F − Bᵀ λ| of a component that no support holds, relative to the forces that meet there, in the
-    /// sense of this module: at most 1e-9 if every node is balanced. `shared`: of forces that were chosen among those that
-    /// self-stress leaves free, the magnitudes of their terms: what they share has that rounding, however small they are.
+    /// sense of this module: at most 1e-9 if every node is balanced.
     pub fn equilibrium_residual(
         &self,
         structure: &Structure,
         u: &Displacements,
-        (lambda, shared): (&DVector<f64>, Option<&DVector<f64>>),
+        terms: &JointTerms<'_>,
+        lambda: &DVector<f64>,
         factors: &[f64],
     ) -> f64 {
         let residual = self.unheld(self.unbalanced(u, lambda, factors));
         let scale = self.handed_on(self.meeting_forces(structure, u, lambda, factors));
-        let rounding = self.handed_on(self.with_shared(self.rounding(u, factors), shared));
+        let rounding = self.handed_on(self.with_shared(self.rounding(u, factors, terms.dislocations), terms.shared));
         largest_share(&residual, &scale, &rounding)
     }
 
@@ -299,24 +315,34 @@ impl MainSystem {
         Some(std::iter::zip(base, settled).map(|(u, s)| u.abs() + s.abs()).collect())
     }
 
-    /// What rounding may leave of each row.
-    pub(super) fn rounding(&self, u: &Displacements, factors: &[f64]) -> Vec<f64> {
+    /// What rounding may leave of each row; `dislocations`: the magnitudes of the terms of those of all joints, where they are
+    /// known.
+    pub(super) fn rounding(&self, u: &Displacements, factors: &[f64], dislocations: Option<&DVector<f64>>) -> Vec<f64> {
         let base = self.dofs.gather(&u.0);
         let sizes = self.sizes_where_supports_settle(&base, factors);
         let terms = self.k.times_absolute(sizes.as_ref().unwrap_or(&base));
-        self.rounding_of(&base, &terms, u.1.as_ref().map_or(0.0, |tail| tail.error), factors)
+        self.rounding_of(&base, &terms, u.1.as_ref().map_or(0.0, |tail| tail.error), factors, dislocations)
     }
 
     /// The same from u on the base dofs, the terms Σ_k |K_ik||u_k| of each row, and what is left of the energy of the
     /// error of u.
-    fn rounding_of(&self, base: &[f64], terms: &[f64], error: f64, factors: &[f64]) -> Vec<f64> {
+    fn rounding_of(
+        &self,
+        base: &[f64],
+        terms: &[f64],
+        error: f64,
+        factors: &[f64],
+        dislocations: Option<&DVector<f64>>,
+    ) -> Vec<f64> {
         // λ is as good as R and RF, and R and RF as good as the energies they come from.
         let root = |joint: usize| self.r[(joint, joint)].max(0.0).sqrt();
         let mut dislocation = 0.0;
         for (index, joint) in self.joints.iter().enumerate() {
             let mut z = 0.0;
             self.each_term(joint, |dof, a| z += a * base[dof]);
-            dislocation += root(index) * z.abs();
+            // A gap that is open by all of itself moves nothing, and is a difference all the same.
+            let own = dislocations.map_or(0.0, |terms| terms[self.independent[index]]);
+            dislocation += root(index) * own.max(z.abs());
         }
         let row = if self.doubled.is_some() { DOUBLED_ROW } else { ROW };
         let mut rows: Vec<f64> = terms.iter().map(|terms| row * terms).collect();

@@ -75,7 +75,7 @@ pub use displacements::Displacements;
 pub use elastic_curves::ElasticCurves;
 pub use element::bar_load::Piece;
 pub use energy::Loaded;
-pub use equilibrium::BalancedState;
+pub use equilibrium::{BalancedState, JointTerms};
 pub use error::{DependentJoint, FreeDirection, Holder, MainSystemError};
 pub use held::HeldForces;
 pub(crate) use kernel::mutual_displacements;

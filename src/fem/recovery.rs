@@ -151,7 +151,7 @@ impl MainSystem {
         factors: &[f64],
     ) -> Vec<Reaction> {
         let forces = self.unbalanced(u, lambda, factors);
-        let rounding = self.rounding(u, factors);
+        let rounding = self.rounding(u, factors, None);
         let mut supported = vec![false; forces.len()];
         // The support that takes the forces of the unsupported nodes of a class.
         let mut taker = vec![usize::MAX; forces.len()];

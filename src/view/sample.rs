@@ -17,19 +17,24 @@ const LONGEST: usize = 40;
 /// Those of `out`.
 pub fn write(out: &mut dyn Write, found: &Sampled, style: &Style) -> io::Result<()> {
     let collapse = share(found.collapse, found.standard_error, found.exact, style);
-    writeln!(out, "{}", style.paint(Role::Accent, &format!("probability of collapse {collapse}")))?;
+    style.paragraph(out, Role::Accent, &format!("probability of collapse {collapse}"))?;
     if let Some(below) = found.below {
-        writeln!(out, "none was drawn: less than {} with 95 % confidence", short(below))?;
+        style.paragraph(
+            out,
+            Role::Plain,
+            &format!("none was drawn: less than {} with 95 % confidence", short(below)),
+        )?;
     }
     if found.undecided > 0.0 {
         let undecided = share(found.undecided, found.undecided_error, found.exact, style);
         let line = format!("undecided {undecided}: neither an answer nor a proof that there is none");
-        writeln!(out, "{}", style.paint(Role::Warning, &line))?;
+        style.paragraph(out, Role::Warning, &line)?;
     }
-    writeln!(out, "{}", style.text(&found.parameters.join("  ")))?;
+    style.paragraph(out, Role::Plain, &found.parameters.join("  "))?;
     if found.draws > 0 {
         let counted = found.collapses.map_or(String::new(), |count| format!(", {count} of them collapses"));
-        writeln!(out, "{} points drawn{counted}; seed {}", found.draws, found.seed)?;
+        let drawn = format!("{} points drawn{counted}; seed {}", found.draws, found.seed);
+        style.paragraph(out, Role::Plain, &drawn)?;
     }
     for note in &found.notes {
         style.paragraph(out, Role::Muted, note)?;
@@ -75,7 +80,8 @@ fn histogram(out: &mut dyn Write, spread: &Spread, style: &Style) -> io::Result<
         return Ok(());
     }
     let unit = spread.unit.as_ref().map_or(String::new(), |unit| format!(", {unit}"));
-    let known = if spread.known < 1.0 { format!(" (known in {})", short(spread.known)) } else { String::new() };
+    let known =
+        if spread.known < 1.0 { format!(" (known with probability {})", short(spread.known)) } else { String::new() };
     writeln!(out)?;
     writeln!(out, "{}", style.text(&format!("{}{unit}{known}", spread.quantity)))?;
     let label = |text: &str| if style.ascii { text.replace('…', "..") } else { text.to_owned() };

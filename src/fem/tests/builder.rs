@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::fem::{Displacements, MainSystem, MainSystemError};
+use crate::fem::{Displacements, JointTerms, MainSystem, MainSystemError};
 use crate::model::pair::{Joint, Law, Pair, joints};
 use crate::model::parameter::Number;
 use crate::model::structure::{
@@ -215,7 +215,7 @@ pub fn main_answer(model: &Model) -> (MainSystem, Displacements, DVector<f64>, V
     let mut lambda = DVector::zeros(system.stiffness().nrows());
     system.loads().iter().for_each(|rf| lambda += rf);
     let u = system.displacements(&factors, &DVector::zeros(lambda.len()));
-    let residual = system.equilibrium_residual(&model.0, &u, (&lambda, None), &factors);
+    let residual = system.equilibrium_residual(&model.0, &u, &JointTerms::default(), &lambda, &factors);
     assert!(residual < 1e-12, "equilibrium {residual:e}");
     (system, u, lambda, factors)
 }

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::builder::{Model, coulomb, frictionless, main_answer, near, point, two_plates};
+use crate::fem::JointTerms;
 use crate::model::structure::{ElementLoad, Load, Plane};
 
 #[track_caller]
@@ -185,7 +186,7 @@ fn patch_of_distorted_quads() {
         near(stress.stress[2], 400.0);
     }
     let lambda = system.stiffness() * &z;
-    assert!(system.equilibrium_residual(&model.0, &u, (&lambda, None), &[]) < 1e-12);
+    assert!(system.equilibrium_residual(&model.0, &u, &JointTerms::default(), &lambda, &[]) < 1e-12);
 }
 
 /// Unit square, E = 1, ν = 0, t = 1, its top fixed, its two bottom nodes the pairs: R is the block of its
@@ -273,7 +274,7 @@ fn cantilever_on_a_stop() {
     near(lambda[0], 30.3125);
     let u = system.displacements(&[1.0], &z);
     near(u.0[1][1], -0.02);
-    assert!(system.equilibrium_residual(&model.0, &u, (&lambda, None), &[1.0]) < 1e-14);
+    assert!(system.equilibrium_residual(&model.0, &u, &JointTerms::default(), &lambda, &[1.0]) < 1e-14);
 }
 
 /// Two bars end to end, a pair between their nodes, both on supports: the joint force goes through both.
@@ -324,10 +325,10 @@ fn frame_on_turned_supports() {
         let z = DVector::from_iterator(6, (1..7).map(|i| 1e-4 * i as f64));
         let lambda = system.stiffness() * &z + &system.loads()[0];
         let u = system.displacements(&[1.0], &z);
-        assert!(system.equilibrium_residual(&model.0, &u, (&lambda, None), &[1.0]) < 1e-12);
+        assert!(system.equilibrium_residual(&model.0, &u, &JointTerms::default(), &lambda, &[1.0]) < 1e-12);
         // A joint force that is off by a millionth is seen.
         let wrong = &lambda * (1.0 + 1e-6);
-        assert!(system.equilibrium_residual(&model.0, &u, (&wrong, None), &[1.0]) > 1e-7);
+        assert!(system.equilibrium_residual(&model.0, &u, &JointTerms::default(), &wrong, &[1.0]) > 1e-7);
         let turned = model.joints();
         let found = crate::fem::kernel::mutual_displacements(&turned, &u.0);
         assert!((found - z).amax() < 1e-16);

@@ -5,8 +5,8 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::builder::{Model, coulomb, frictionless, point, turning};
-use crate::fem::MainSystemError;
 use crate::fem::dof::Dofs;
+use crate::fem::{JointTerms, MainSystemError};
 use crate::model::structure::{Component, Load};
 
 /// (base dof, coefficient).
@@ -170,10 +170,11 @@ fn as_with_every_constraint_written_out() {
                 close("u", *found, *right, x.rows(0, n).amax());
             }
             let lambda = &system.loads()[case];
-            let residual = system.equilibrium_residual(structure, &u, (lambda, None), &factors);
+            let residual = system.equilibrium_residual(structure, &u, &JointTerms::default(), lambda, &factors);
             assert!(residual < 1e-12, "seed {seed}: {residual}");
             // A wrong joint force is out of balance.
-            let residual = system.equilibrium_residual(structure, &u, (&(lambda * 1.001), None), &factors);
+            let residual =
+                system.equilibrium_residual(structure, &u, &JointTerms::default(), &(lambda * 1.001), &factors);
             assert!(residual > 1e-6, "seed {seed}: {residual}");
             let reactions = system.reactions(structure, &u, lambda, &factors);
             let springs = system.spring_forces(structure, &u);
@@ -269,7 +270,7 @@ fn elements_inside_a_body_do_not_matter() {
         model.case(vec![turning(plate[1][2], [0.0; 2], 3e-3)]);
         let system = model.solve();
         let u = system.displacements(&[1.0], &DVector::zeros(0));
-        let residual = system.equilibrium_residual(&model.0, &u, (&DVector::zeros(0), None), &[1.0]);
+        let residual = system.equilibrium_residual(&model.0, &u, &JointTerms::default(), &DVector::zeros(0), &[1.0]);
         assert!(residual < 1e-12, "{residual}");
         u.0
     };
