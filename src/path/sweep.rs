@@ -284,7 +284,8 @@ pub(super) fn fields(answer: &Answer) -> Vec<Value> {
     // Slips in space have directions of their own: neither + nor −.
     let in_space = answer.pairs.iter().any(|pair| pair.space.is_some());
     let sense = |state: State| if in_space { Value::Null } else { count(state) };
-    let [slip, slip_pair] = largest(&|k| answer.pairs[k].z_t);
+    // A size, as in the line of the status: its sign says the sense, not which slip is larger.
+    let [slip, slip_pair] = largest(&|k| answer.pairs[k].z_t.abs());
     let [gap, gap_pair] = largest(&|k| answer.pairs[k].z_n);
     let [force, force_pair] = largest(&|k| answer.pairs[k].x_n);
     vec![

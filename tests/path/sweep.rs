@@ -270,3 +270,18 @@ fn rows_say_what_was_found() {
     assert!((slip - 1e-5 * 50.0 * 10.0).abs() < 1e-12, "{slip}");
     assert_eq!(cells[11], "c6");
 }
+
+/// The largest slip is a size: pulled or pushed by the same force the beam slips as far.
+#[test]
+fn the_largest_slip_of_a_row_is_its_size() {
+    let case = Case::new("beam", &["F2=-250:250:500"]);
+    let text = String::from_utf8(case.bytes("1/1", Format::Csv)).expect("text");
+    let rows: Vec<Vec<&str>> = text.lines().skip(2).map(|row| row.split(',').collect()).collect();
+    assert_eq!(rows.iter().map(|cells| cells[0]).collect::<Vec<_>>(), ["-250.0", "250.0"]);
+    for (cells, senses) in rows.iter().zip([["0", "4"], ["4", "0"]]) {
+        // Five pairs reach their bound of 50, the last of them just: four slip, z as in `rows_say_what_was_found`.
+        let slip: f64 = cells[10].parse().expect("a number");
+        assert!((slip - 1e-5 * 50.0 * 10.0).abs() < 1e-12, "{cells:?}");
+        assert_eq!((&cells[7..9], cells[11]), (&senses[..], "c6"));
+    }
+}
