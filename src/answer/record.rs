@@ -9,8 +9,8 @@ pub use super::outcome::OutcomeKind;
 pub use super::pair_record::{InSpace, PairState, State};
 pub use super::ray_record::{Direction, PairDirection, Ray, RayClass, Slip, VariableRate, Verdict};
 use crate::contact::polygon::Polygon;
-use crate::fem::Piece;
-use crate::model::structure::{Dimension, Structure};
+use crate::fem::{Displacements, MainSystem, Piece};
+use crate::model::structure::{Component, Dimension, Structure};
 use crate::model::uses::Redone;
 use crate::model::vector::length;
 
@@ -91,6 +91,8 @@ pub struct NodeDisplacement {
     pub rz: f64,
     /// u_z, r_x, r_y of a structure in space.
     pub space: Option<[f64; 3]>,
+    /// The components that the node does not have, in the order of `all`: nothing turns at a node of plates.
+    pub without: [bool; 6],
 }
 
 impl NodeDisplacement {
@@ -105,8 +107,31 @@ impl NodeDisplacement {
                 uy,
                 rz,
                 space: in_space.then_some([uz, rx, ry]),
+                without: [false; 6],
             })
             .collect()
+    }
+
+    /// Of the nodes of a main system: those that do not turn say so.
+    pub fn of_state(main: &MainSystem, structure: &Structure, u: &Displacements) -> Vec<NodeDisplacement> {
+        let mut nodes = NodeDisplacement::of_nodes(structure, &u.0);
+        for (at, node) in nodes.iter_mut().enumerate() {
+            node.without = Component::ALL.map(|component| !main.has(at, component));
+        }
+        nodes
+    }
+
+    /// The components by name, of the plane or of space; none where the node does not have it.
+    pub fn named(&self) -> Vec<(&'static str, Option<f64>)> {
+        let names = ["ux", "uy", "uz", "rx", "ry", "rz"];
+        let of_plane = |component: usize| matches!(component, 0 | 1 | 5);
+        let shown = (0..6).filter(|component| self.space.is_some() || of_plane(*component));
+        shown.map(|component| (names[component], self.component(component))).collect()
+    }
+
+    /// A component in the order of `all`; none where the node does not have it.
+    pub fn component(&self, component: usize) -> Option<f64> {
+        (!self.without[component]).then(|| self.all()[component])
     }
 
     /// (u_x, u_y, u_z, r_x, r_y, r_z), lengths and radians.
@@ -124,11 +149,7 @@ impl NodeDisplacement {
 
 impl Serialize for NodeDisplacement {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let numbers = match self.space {
-            None => vec![("ux", self.ux), ("uy", self.uy), ("rz", self.rz)],
-            Some(_) => ["ux", "uy", "uz", "rx", "ry", "rz"].into_iter().zip(self.all()).collect(),
-        };
-        named(serializer, Some(("node", &self.node)), numbers)
+        named(serializer, Some(("node", &self.node)), self.named())
     }
 }
 
@@ -136,7 +157,7 @@ impl Serialize for NodeDisplacement {
 fn named<S: Serializer>(
     serializer: S,
     name: Option<(&str, &str)>,
-    numbers: Vec<(&str, f64)>,
+    numbers: Vec<(&str, impl Serialize)>,
 ) -> Result<S::Ok, S::Error> {
     let mut map = serializer.serialize_map(Some(usize::from(name.is_some()) + numbers.len()))?;
     if let Some((key, name)) = name {

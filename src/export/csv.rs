@@ -73,14 +73,15 @@ pub fn pivots(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes the nodal displacements; only the head line where there are none.
+/// Writes the nodal displacements; only the head line where there are none. A component that a node does not have is
+/// empty.
 pub fn displacements(out: &mut dyn Write, answer: &Answer) -> io::Result<()> {
-    use Field::{Number, Text};
+    use Field::{Empty, Number, Text};
     let is_in_space = answer.displacements.iter().flatten().any(|node| node.space.is_some());
     head(out, if is_in_space { "node,ux,uy,uz,rx,ry,rz" } else { "node,ux,uy,rz" })?;
     for node in answer.displacements.iter().flatten() {
-        let numbers = if is_in_space { node.all().to_vec() } else { vec![node.ux, node.uy, node.rz] };
-        row(out, &[vec![Text(&node.node)], numbers.into_iter().map(Number).collect()].concat())?;
+        let numbers = node.named().into_iter().map(|(_, number)| number.map_or(Empty, Number));
+        row(out, &[vec![Text(&node.node)], numbers.collect()].concat())?;
     }
     Ok(())
 }

@@ -29,7 +29,7 @@ use super::sparse::SymmetricSparse;
 use super::threads::both;
 use crate::doubled::Doubled;
 use crate::model::pair::Joint;
-use crate::model::structure::Structure;
+use crate::model::structure::{Component, Structure};
 use crate::watch::{Quiet, Watch};
 
 /// Size of the problem.
@@ -174,6 +174,11 @@ impl MainSystem {
         system.seconds.condense = clock.elapsed().as_secs_f64();
         watch.progress(&condensing, 1.0);
         Ok(system)
+    }
+
+    /// Whether a node has this component of a displacement: nothing turns at nodes of trusses, plates and solids.
+    pub fn has(&self, node: usize, component: Component) -> bool {
+        self.dofs.of(node, component).is_some()
     }
 
     /// The same structure under other loads: F and RF anew, with the factorization kept.

@@ -64,7 +64,7 @@ impl Prepared {
             equilibrium = Some(compatibility + residual);
             answer.members = self.members(&u, &problem.factors);
             answer.reactions = self.reactions(&u, &state.force, &problem.factors);
-            let displacements = NodeDisplacement::of_nodes(structure, &u.0);
+            let displacements = NodeDisplacement::of_state(main, structure, &u);
             answer.notes.extend(note_on_large_displacements(structure, &displacements));
             answer.displacements = Some(displacements);
         }

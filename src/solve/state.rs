@@ -179,7 +179,7 @@ impl Solved {
         };
         let state = self.state_at(step)?;
         let u = main.displacements(&problem.factors, &problem.dislocation(&state.z));
-        Some(NodeDisplacement::of_nodes(structure, &u.0))
+        Some(NodeDisplacement::of_state(main, structure, &u))
     }
 
     /// z and w of a bare LCP after pivot `step`.

@@ -32,11 +32,10 @@ pub fn table(displacements: &[NodeDisplacement], units: &Units) -> Table {
         table.columns.extend(turns.iter().map(turned));
     }
     for node in displacements {
-        let all = node.all();
         let mut cells = vec![Cell::from(node.node.as_str())];
-        cells.extend(all[..lengths.len()].iter().map(|u| Cell::number(*u)));
+        cells.extend((0..lengths.len()).map(|at| Cell::maybe(node.component(at))));
         if rotations {
-            cells.extend(all[6 - turns.len()..].iter().map(|turn| Cell::number(*turn)));
+            cells.extend((6 - turns.len()..6).map(|at| Cell::maybe(node.component(at))));
         }
         table.rows.push(Row::new(cells));
     }

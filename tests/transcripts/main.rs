@@ -16,6 +16,7 @@ mod plausibility;
 mod program;
 mod pty;
 mod quantities;
+mod questions;
 mod random_lines;
 mod recording;
 mod references;

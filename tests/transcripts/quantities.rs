@@ -13,7 +13,7 @@ fn report(session: &mut Session, command: &str) -> Value {
 
 /// A cantilever AB of length 4 with P = 3 downwards at B (E I = 200), and a block 2 × 1 under a load (H, −W) spread over
 /// its top, H = 2, W = 10.
-const TWO: &str = r#"{
+pub(super) const TWO: &str = r#"{
   "format": "stickslip/1", "title": "cantilever and block", "units": { "length": "m", "force": "kN" },
   "parameters": { "P": 3, "H": 2, "W": 10, "f": 0.5 },
   "materials": { "m": { "E": 20000, "nu": 0.3 } },

@@ -4,7 +4,7 @@ use super::facts::Facts;
 use super::value::NoValue;
 use crate::answer::record::{NodeDisplacement, Reaction};
 use crate::answer::rounding::{denoised, of_reactions};
-use crate::model::quantity::OfNode;
+use crate::model::quantity::{Meaning, OfNode};
 use crate::model::vector::length;
 
 impl OfNode {
@@ -29,15 +29,25 @@ impl OfNode {
 
 impl Facts<'_> {
     pub(super) fn of_node(&self, which: OfNode, node: &str) -> Result<f64, NoValue> {
-        self.structure()?;
+        let (_, main) = self.structure()?;
         let Some(component) = which.displaced() else {
             let reactions = self.reactions()?;
             let found = reactions.iter().find(|reaction| reaction.node == node);
             let found = found.ok_or_else(|| NoValue(format!("no support at node {node}")))?;
             return Ok(which.of_reaction(found, of_reactions(&reactions)));
         };
-        let u = self.displacements()?;
-        Ok(u.0[self.node(node)?][component as usize])
+        let at = self.node(node)?;
+        if !main.has(at, component) {
+            return Err(NoValue(match component.is_rotation() {
+                true => format!(
+                    "the node {node} has no rotation: no frame bar is rigidly attached to it, and it is of no rigid body"
+                ),
+                false => {
+                    format!("the node {node} has no {}: the superelement leaves it out", Meaning::Node(which).word())
+                }
+            }));
+        }
+        Ok(self.displacements()?.0[at][component as usize])
     }
 
     /// The largest displacement.

@@ -140,7 +140,7 @@ proptest! {
         narrow(s, |out| check::write(out, &answer, s));
         narrow(s, |out| difference::write(out, &previous, &answer, s));
         let nodes: Vec<NodeDisplacement> = answer.pairs.iter().map(|p| NodeDisplacement {
-            node: p.id.clone(), ux: p.z_n, uy: p.z_t, rz: p.x_n, space: None,
+            node: p.id.clone(), ux: p.z_n, uy: p.z_t, rz: p.x_n, ..NodeDisplacement::default()
         }).collect();
         narrow(s, |out| displacements::write(out, &nodes, &units, s));
         let supports: Vec<Reaction> = answer.pairs.iter().map(|p| Reaction {
@@ -198,7 +198,7 @@ proptest! {
         let s = &style;
         for structure in [beam_structure(), plates(), moved] {
             let displacements: Vec<NodeDisplacement> = structure.nodes.iter().zip(&u).map(|(node, u)| {
-                NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2], space: None }
+                NodeDisplacement { node: node.id.clone(), ux: u[0], uy: u[1], rz: u[2], ..NodeDisplacement::default() }
             }).collect();
             let picture = Picture {
                 title: "any", structure: &structure, displacements: Some(&displacements), factors: &[1.0],

@@ -94,7 +94,7 @@ pub fn beam(friction: f64, pull: f64) -> Answer {
                     ux: pair.z_t,
                     uy: -1e-21,
                     rz: -0.0,
-                    space: None,
+                    ..NodeDisplacement::default()
                 })
                 .collect(),
         ),
@@ -413,7 +413,7 @@ pub fn cantilever() -> (Structure, Vec<MemberForces>, Vec<NodeDisplacement>) {
                 ux: 0.0,
                 uy: -q * x * x * (6.0 * l * l - 4.0 * l * x + x * x) / (24.0 * ei),
                 rz: -q * x * (12.0 * l * l - 12.0 * l * x + 4.0 * x * x) / (24.0 * ei),
-                space: None,
+                ..NodeDisplacement::default()
             }
         })
         .collect();

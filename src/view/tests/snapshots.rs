@@ -113,7 +113,7 @@ fn pictures(style: &Style) -> String {
                 ux: if node.id.starts_with("upper") { 1e-3 } else { 0.0 },
                 uy: 0.0,
                 rz: 0.0,
-                space: None,
+                ..NodeDisplacement::default()
             })
             .collect();
         let states: Vec<PairState> = (0..9)
