@@ -145,6 +145,32 @@ impl Structure {
         Some(mesh.elements.start + index)
     }
 
+    /// Ids of plates, bricks and meshes, then the names of the parts of meshes.
+    pub fn bodies(&self) -> Vec<&str> {
+        let plates = self.plates.iter().map(|plate| plate.id.as_str());
+        let bricks = self.bricks.iter().map(|brick| brick.id.as_str());
+        let meshes = self.meshes.iter().map(|mesh| mesh.id.as_str());
+        let parts = self.meshes.iter().flat_map(|mesh| &mesh.bodies).map(|body| body.name.as_str());
+        let mut names: Vec<&str> = plates.chain(bricks).chain(meshes).collect();
+        // A mesh of one part bears its name.
+        parts.for_each(|part| {
+            if !names.contains(&part) {
+                names.push(part)
+            }
+        });
+        names
+    }
+
+    /// The elements of one of the [`bodies`](Self::bodies).
+    pub fn elements_of_body(&self, name: &str) -> Option<Vec<usize>> {
+        let plates = self.plates.iter().map(|plate| (&plate.id, &plate.elements));
+        let bricks = self.bricks.iter().map(|brick| (&brick.id, &brick.elements));
+        let meshes = self.meshes.iter().map(|mesh| (&mesh.id, &mesh.elements));
+        let whole = plates.chain(bricks).chain(meshes).find(|(id, _)| *id == name);
+        let parts = || self.meshes.iter().flat_map(|mesh| &mesh.bodies).find(|body| body.name == name);
+        whole.map(|(_, elements)| elements.clone().collect()).or_else(|| parts().map(|body| body.elements.clone()))
+    }
+
     /// The element that a name means: `lower{i,j}` of a plate, `ID#TAG` of a mesh, or the id of an element of its own.
     pub fn element_named(&self, name: &str) -> Option<usize> {
         if let Some((_, element)) = self.named_elements.iter().find(|(id, _)| id == name) {

@@ -11,6 +11,9 @@ use crate::path::quantity::{NoValue, OnPath, Value};
 use crate::path::record::PathRecord;
 use crate::text::number::{measured, with_unit};
 
+/// A quantity, its value, and where an extreme stands.
+pub type Shown = (Quantity, Result<Value, NoValue>, Option<String>);
+
 /// A value with its unit, or why there is none.
 pub fn shown(quantity: &Quantity, value: &Result<Value, NoValue>, units: &Units) -> (String, Role) {
     match value {
@@ -48,16 +51,14 @@ pub fn write_along(
 }
 
 /// One line for each quantity; numbers with ten digits.
-pub fn write(
-    out: &mut dyn Write,
-    values: &[(Quantity, Result<Value, NoValue>)],
-    units: &Units,
-    style: &Style,
-) -> io::Result<()> {
+pub fn write(out: &mut dyn Write, values: &[Shown], units: &Units, style: &Style) -> io::Result<()> {
     let mut table = Table::new(vec![Column::words("quantity"), Column::words("value")]);
-    for (quantity, value) in values {
+    for (quantity, value, at) in values {
         let (text, role) = match value {
-            Ok(Value::Number(value)) => (with_unit(&exact(*value), quantity.unit(units).as_deref()), Role::Plain),
+            Ok(Value::Number(value)) => {
+                let place = at.as_ref().map_or(String::new(), |at| format!(" at {at}"));
+                (with_unit(&exact(*value), quantity.unit(units).as_deref()) + &place, Role::Plain)
+            }
             value => shown(quantity, value, units),
         };
         table.rows.push(Row::new(vec![Cell::from(quantity.to_string()), Cell::new(text, role)]));

@@ -38,7 +38,7 @@ pub struct Peak {
     pub quantity: Quantity,
     /// With its sign.
     pub value: f64,
-    /// Pair or bar; empty where there is none.
+    /// Pair, bar or node; empty where there is none.
     pub at: String,
 }
 

@@ -47,7 +47,7 @@ fn quantities_page() {
         "# Quantities\n\nMade from the words of the program. One language for everything that can be asked: `show Q`, `expect Q < 3`, \
          probes in the file, `find P where Q = 0`, `envelope Q over P`, `trace … of Q`, `map … of Q`, `sweep --columns`, `sample … of \
          Q`, `plot path Q`. A probe's name is a quantity as well; names with blanks are quoted. A PATTERN is a pair, an edge \
-         contact, or has `*` for any letters; left out it means all. Signs: [signs.md](signs.md).\n\n\
+         contact, or has `*` for any letters; left out it means all; so does a BODY (a plate, a brick, a mesh or a part of one). Signs: [signs.md](signs.md).\n\n\
          | quantity | dimension | what it is |\n| --- | --- | --- |\n",
     );
     for word in WORDS {

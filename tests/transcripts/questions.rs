@@ -39,3 +39,114 @@ fn nodes_without_a_rotation_show_none() {
         assert!(refused(&mut session, "expect rz b[0,0] = 0").contains("has no rotation"));
     }
 }
+
+/// Two squares of side 1 and thickness 1, pulled along x by H and pushed by 2 H at its free side: σ_x = H and −2 H all over.
+const SQUARES: &str = r#"{
+  "format": "stickslip/1", "title": "two squares", "parameters": { "H": { "value": 3, "min": 0, "max": 10 } },
+  "materials": { "m": { "E": 1000, "nu": 0 } },
+  "plates": [ { "id": "a", "origin": [0, 0], "size": [1, 1], "divisions": [2, 2], "thickness": 1, "material": "m", "plane": "stress" },
+              { "id": "b", "origin": [3, 0], "size": [1, 1], "divisions": [2, 2], "thickness": 1, "material": "m", "plane": "stress" } ],
+  "supports": [ { "at": "a.left", "fixed": ["x", "y"] }, { "at": "b.left", "fixed": ["x", "y"] } ],
+  "loads": {
+    "pull": { "factor": "H", "items": [ { "traction": { "edge": "a.right", "value": [1, 0] } } ] },
+    "push": { "factor": "2*H", "items": [ { "traction": { "edge": "b.right", "value": [-1, 0] } } ] } },
+  "probes": { "worst": "max mises b" }
+}"#;
+
+/// Extremes of stresses have the values of the closed form, wherever quantities are asked for.
+#[test]
+fn extremes_of_stresses_are_quantities() {
+    let mut session = read(SQUARES);
+    for expected in [
+        "max sx = 3 ± 1e-9",
+        "min sx = -6 ± 1e-9",
+        "max sx b = -6 ± 1e-9",
+        "max mises = 6 ± 1e-9",
+        "max mises a = 3 ± 1e-9",
+        "min s2 a = 0 ± 1e-9",
+        "worst = 6 ± 1e-9",
+    ] {
+        text(&mut session, &format!("expect {expected}"));
+    }
+    let worst = report(&mut session, "find H where max mises a = 4").expect("a place");
+    assert!((worst["places"][0]["value"].as_f64().expect("a value") - 4.0).abs() < 1e-9, "{worst}");
+    let rows = report(&mut session, "sweep H 1..2 2 --columns 'min sx'").expect("rows");
+    let column = rows["columns"].as_array().expect("columns").iter().position(|name| name == "min sx").expect("min sx");
+    for (row, expected) in rows["rows"].as_array().expect("rows").iter().zip([-2.0, -4.0]) {
+        assert!((row[column].as_f64().expect("a number") - expected).abs() < 1e-9, "{row}");
+    }
+    assert!(refused(&mut session, "show max mises c").contains("no plate, brick or mesh `c`"));
+    let mut bars = super::lines::embedded("beam");
+    let shown = report(&mut bars, "show max mises").expect("a row");
+    assert!(shown[0]["reason"].as_str().is_some_and(|why| why.contains("no plate")), "{shown}");
+}
+
+/// The extremes are those of the stresses at the nodes in the result, at the node where they stand there.
+#[test]
+fn extremes_of_stresses_are_those_of_the_result() {
+    let space = include_str!("../../scenarios/block-3d.json");
+    for (scenario, body, words) in
+        [(TWO, "b", &["sx", "sy", "sxy", "s1", "s2", "mises"][..]), (space, "block", &["sz", "syz", "s3", "mises"])]
+    {
+        let mut session = read(scenario);
+        let stresses = session.result(false).expect("an answer")["stresses"].as_array().expect("stresses").clone();
+        let at_nodes: Vec<_> = stresses.iter().filter(|one| one["node"].is_string()).collect();
+        assert!(at_nodes.len() > 4);
+        for word in words {
+            for (over, sign) in [("max", 1.0), ("min", -1.0)] {
+                for body in ["", body] {
+                    let inside =
+                        |one: &&&serde_json::Value| one["node"].as_str().is_some_and(|node| node.starts_with(body));
+                    let value = |one: &serde_json::Value| one[word].as_f64().expect("a number");
+                    let extreme =
+                        at_nodes.iter().filter(inside).map(|one| sign * value(one)).fold(f64::NEG_INFINITY, f64::max);
+                    let shown = report(&mut session, &format!("show {over} {word} {body}")).expect("a row")[0].take();
+                    assert_eq!(shown["value"].as_f64(), Some(sign * extreme), "{over} {word} {body}");
+                    let there = at_nodes.iter().find(|one| one["node"] == shown["at"]).expect("a node");
+                    assert_eq!(value(there), sign * extreme, "{shown}");
+                }
+            }
+        }
+        let peaks = report(&mut session, "summary").expect("a summary");
+        let stress =
+            peaks["extremes"].as_array().expect("extremes").iter().find(|one| one["quantity"] == "von Mises stress");
+        assert_eq!(
+            stress.expect("a line")["value"],
+            report(&mut session, "show max mises").expect("a row")[0]["value"]
+        );
+    }
+}
+
+/// Signs of comparison need no blanks, wherever conditions are read; a probe with such a sign in its name keeps it.
+#[test]
+fn comparisons_need_no_blanks() {
+    // u_y of B = −P L³/(3 E I), −0.32 at P = 3; M at the clamp is −4 P.
+    let mut session = read(&TWO.replace("tip sag", "u<0"));
+    for line in [
+        "uy B=-0.32±1e-9",
+        "uy B<-0.3",
+        "uy B < -0.3",
+        "u<0=-4*P*16/600 ± 1e-9",
+        "u<0 = -0.32 ± 1e-9",
+        "M AB start=-12±1e-9",
+        "M AB at 1<=-8.9",
+        "max x_n base[*]>=2",
+        "count open=0",
+        "state base[2]=stick",
+        "outcome!=ray",
+        "pivots>=0",
+        "result places[0].value=2±1e-9",
+    ] {
+        text(&mut session, "find P 1..4 where M AB start=-8");
+        text(&mut session, &format!("expect {line}"));
+    }
+    let found = report(&mut session, "find P 1..4 where uy B<-0.16*4/3").expect("an interval");
+    assert!((found["holds"][0][0].as_f64().expect("a number") - 2.0).abs() < 1e-9, "{found}");
+    assert!(refused(&mut session, "expect uy B>0").contains("expected uy B > 0"));
+    assert!(refused(&mut session, "expect uy C>0").contains("no node `C`"));
+    let mut beam = super::lines::embedded("beam");
+    let slip = report(&mut beam, "show z_t c6").expect("a row")[0]["value"].as_f64().expect("a number");
+    let found = report(&mut beam, &format!("calibrate f 0..1 where z_t c6={slip}")).expect("a friction");
+    assert!((found["groups"][0]["value"].as_f64().expect("a number") - 0.5).abs() < 1e-6, "{found}");
+    assert!(refused(&mut beam, "expect collapse<0.1").contains("nothing was sampled yet"));
+}

@@ -83,6 +83,8 @@ pub enum Quantity {
     NodeStress(OfStress, String),
     /// A stress in an element.
     ElementStress(OfStress, String),
+    /// The largest or least of a stress over the nodes of areas and solids: of all of them, or of a body.
+    Stresses(Over, OfStress, Option<String>),
     /// Limit or safety of a load.
     Load(OfLoad, String),
     /// Critical friction.
@@ -118,7 +120,9 @@ impl Quantity {
             Quantity::Node(which, _) => Meaning::Node(*which),
             Quantity::LargestDisplacement => Meaning::Node(OfNode::Ux),
             Quantity::Bar(which, ..) => Meaning::Bar(*which),
-            Quantity::NodeStress(which, _) | Quantity::ElementStress(which, _) => Meaning::Stress(*which),
+            Quantity::NodeStress(which, _) | Quantity::ElementStress(which, _) | Quantity::Stresses(_, which, _) => {
+                Meaning::Stress(*which)
+            }
             Quantity::Load(which, _) => Meaning::Load(*which),
             Quantity::Critical(_) => Meaning::Critical,
             Quantity::Stage(..) | Quantity::Probe(..) => Meaning::Stage,
@@ -183,6 +187,10 @@ impl fmt::Display for Quantity {
             | Quantity::Load(_, name)
             | Quantity::Critical(name) => write!(f, "{word} {name}"),
             Quantity::Pairs(how, _, pattern) => write!(f, "{} {word} {pattern}", over(how)),
+            Quantity::Stresses(how, _, body) => {
+                write!(f, "{} {word}", over(how))?;
+                body.as_ref().map_or(Ok(()), |body| write!(f, " {body}"))
+            }
             Quantity::Count(state, pattern) => write!(f, "{word} {state} {pattern}"),
             Quantity::Resultant(joint, part) => write!(f, "{word} {joint} {}", part.word()),
             Quantity::LargestDisplacement => write!(f, "max u"),

@@ -57,6 +57,17 @@ impl<'s> Names<'s> {
         joints
     }
 
+    /// Whether a word is a name of something that quantities are of.
+    pub fn has(&self, word: &str) -> bool {
+        let listed = [&self.pairs, &self.bars, &self.cases, &self.parameters];
+        listed.into_iter().flatten().any(|name| *name == word)
+            || self.nodes.contains(word)
+            || self.probes.iter().any(|(name, _)| name == word)
+            || self.element(word)
+            || self.joints().contains(&word)
+            || self.structure.is_some_and(|structure| structure.bodies().contains(&word))
+    }
+
     /// Ids of the bars.
     pub fn bars(&self) -> &[&'s str] {
         &self.bars

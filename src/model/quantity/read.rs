@@ -231,23 +231,41 @@ fn over<'w>(over: Over, rest: &'w [String], names: &Names<'_>) -> Result<(Quanti
             let (pattern, rest) = pattern(after, names)?;
             Ok((Quantity::Pairs(over, which, pattern), rest))
         }
+        Some(Meaning::Stress(which)) if over != Over::Sum => {
+            let (body, rest) = body(after, names)?;
+            Ok((Quantity::Stresses(over, which, body), rest))
+        }
         _ => error(format!(
             "`{word} {inner}`{}: expected a number of pairs, like `{word} x_n joint[*]`{}",
             did_you_mean_typed(inner, pair_words(names.dimension).map(|(word, _)| word)),
             match over {
                 Over::Sum => "",
-                Over::Max => ", of a bar, like `max M AB`, or `max u`",
-                Over::Min => ", or of a bar, like `min M AB`",
+                Over::Max => ", of a bar, like `max M AB`, a stress, like `max s1`, or `max u`",
+                Over::Min => ", of a bar, like `min M AB`, or a stress, like `min s2`",
             }
         )),
     }
 }
 
+/// A plate, a brick, a mesh or a part of one; all of them where none is named.
+fn body<'w>(rest: &'w [String], names: &Names<'_>) -> Result<(Option<String>, &'w [String]), QuantityError> {
+    let bodies = names.structure.map_or_else(Vec::new, |structure| structure.bodies());
+    match rest.split_first() {
+        Some((body, rest)) if bodies.contains(&body.as_str()) => Ok((Some(body.clone()), rest)),
+        Some((body, _)) if goes_on(body) => error(no_such("plate, brick or mesh", body, bodies)),
+        _ => Ok((None, rest)),
+    }
+}
+
+/// Whether a word that may be left out is there: neither a comparison nor the next quantity.
+fn goes_on(word: &str) -> bool {
+    !word.starts_with(['=', '<', '>', '!']) && entry(word).is_none()
+}
+
 /// A pattern of pairs; all of them where none is given.
 fn pattern<'w>(rest: &'w [String], names: &Names<'_>) -> Result<(String, &'w [String]), QuantityError> {
-    let starts_comparison = |word: &str| word.starts_with(['=', '<', '>', '!']);
     match rest.split_first() {
-        Some((pattern, rest)) if !starts_comparison(pattern) && entry(pattern).is_none() => {
+        Some((pattern, rest)) if goes_on(pattern) => {
             if names.pairs.iter().any(|id| fits(pattern, id)) {
                 return Ok((pattern.clone(), rest));
             }
@@ -267,8 +285,19 @@ pub fn read_all(words: &[String], names: &Names<'_>) -> Result<Vec<Quantity>, Qu
     let mut quantities = Vec::new();
     for part in listed_parts(words, names) {
         let mut rest = &part[..];
-        while !rest.is_empty() {
-            let (quantity, after) = read(rest, names)?;
+        while let Some(word) = rest.first() {
+            let (quantity, after) = read(rest, names).map_err(|error| match quantities.last() {
+                // What stands behind a bar is more likely a place on it than another quantity.
+                Some(bar @ Quantity::Bar(.., BarPlace::Extreme))
+                    if rest.len() < part.len() && entry(word).is_none() =>
+                {
+                    let near = did_you_mean_typed(word, ["at", "start", "end"]);
+                    QuantityError(format!(
+                        "`{word}` after `{bar}`{near}: expected `at DISTANCE`, `start` or `end`, or another quantity"
+                    ))
+                }
+                _ => error,
+            })?;
             quantities.push(quantity);
             rest = after;
         }
@@ -378,6 +407,9 @@ mod tests {
             "sx B",
             "mises lower{3,1}",
             "s1 q1",
+            "max mises",
+            "min s2 lower",
+            "stage 1 max sxy lower",
             "limit pull",
             "safety F2",
             "critical f",
@@ -440,6 +472,19 @@ mod tests {
     }
 
     #[test]
+    fn a_wrong_place_on_a_bar_is_told_as_one() {
+        let names = names(&[]);
+        let error = |text: &str| read_text(text, &names).expect_err(text).to_string();
+        assert_eq!(
+            error("M AB ende"),
+            "`ende` after `M AB` (did you mean `end`?): expected `at DISTANCE`, `start` or `end`, or another quantity"
+        );
+        assert!(error("x_n c1 ende").contains("unknown quantity `ende`"));
+        assert!(error("M AB, ende").contains("unknown quantity `ende`"));
+        assert!(error("M AB x_n c9").contains("no pair `c9`"));
+    }
+
+    #[test]
     fn unknown_words_and_names_are_told() {
         let names = names(&[]);
         for (text, part) in [
@@ -450,6 +495,9 @@ mod tests {
             ("M CD", "no bar `CD`"),
             ("M AB at x", "`x` is not a distance"),
             ("sum M AB", "expected a number of pairs"),
+            ("sum mises", "expected a number of pairs"),
+            ("max mises lowr", "no plate, brick or mesh `lowr` (did you mean `lower`?)"),
+            ("max s3", "`s3` is a quantity of space"),
             ("sum x_n d*", "no pair `d*`"),
             ("count opne", "no state `opne` (did you mean `open`?)"),
             ("count slip", "no state `slip` (did you mean `slip+`"),

@@ -198,7 +198,7 @@ pub enum Meaning {
     Pair(OfPair),
     /// A pair.
     State,
-    /// What is summed or compared, and the pairs or the bar.
+    /// What is summed or compared, and the pairs, the bar or the body.
     Over(Over),
     /// A state and pairs.
     Count,
@@ -230,7 +230,8 @@ impl Meaning {
             Meaning::Resultant => "JOINT N|T|e",
             Meaning::Load(_) => "CASE",
             Meaning::Critical => "FRICTION",
-            Meaning::Over(_) => "QUANTITY [PATTERN]",
+            Meaning::Over(Over::Sum) => "QUANTITY [PATTERN]",
+            Meaning::Over(_) => "QUANTITY [PATTERN | BODY]",
             Meaning::Count => "STATE [PATTERN]",
             Meaning::Stage => "S QUANTITY",
         }
@@ -353,8 +354,18 @@ pub static WORDS: &[Word] = &[
     number("z_t2", M::Pair(OfPair::SlipAlong(1)), D::Length, "in space: slip along t2"),
     chosen("state", M::State, STATES, "open, stick, slip+, slip- (in space: slip) or closed"),
     number("sum", M::Over(Over::Sum), D::Inner, "sum over pairs: sum x_n joint[*]"),
-    number("max", M::Over(Over::Max), D::Inner, "largest over pairs, along a bar, or |u|: max M AB, max u"),
-    number("min", M::Over(Over::Min), D::Inner, "least over pairs or along a bar"),
+    number(
+        "max",
+        M::Over(Over::Max),
+        D::Inner,
+        "largest over pairs, along a bar, of a stress over the nodes, or |u|: max M AB, max mises dam, max u",
+    ),
+    number(
+        "min",
+        M::Over(Over::Min),
+        D::Inner,
+        "least over pairs, along a bar, or of a stress over the nodes: min s2 dam",
+    ),
     number("count", M::Count, D::None, "number of pairs in a state: count open joint[*]"),
     number("resultant", M::Resultant, D::Inner, "of an edge contact: N, T, or the eccentricity e of N"),
     number("ux", M::Node(OfNode::Ux), D::Length, "displacement along x"),

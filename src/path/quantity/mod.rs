@@ -11,7 +11,7 @@ mod path;
 mod stress;
 mod value;
 
-use crate::model::quantity::Quantity;
+use crate::model::quantity::{Over, Quantity};
 
 pub use facts::Facts;
 pub use joint::Resultant;
@@ -31,18 +31,38 @@ impl Facts<'_> {
             Quantity::Stage(stage, inner) => return self.of_stage(*stage, inner),
             Quantity::Probe(_, inner) => return self.value(inner),
             Quantity::Pair(which, id) => which.of(self.pair(id)?),
-            Quantity::Pairs(over, which, pattern) => self.of_pairs(*over, *which, pattern)?,
+            Quantity::Pairs(over, which, pattern) => self.of_pairs(*over, *which, pattern)?.0,
             Quantity::Count(state, pattern) => self.count(state, pattern)?,
             Quantity::Resultant(joint, part) => self.of_joint(joint, *part)?,
             Quantity::Node(which, node) => self.of_node(*which, node)?,
-            Quantity::LargestDisplacement => self.largest_displacement()?,
+            Quantity::LargestDisplacement => self.largest_displacement()?.0,
             Quantity::Bar(which, bar, place) => self.of_bar(*which, bar, *place)?,
             Quantity::NodeStress(which, node) => self.at_node(*which, node)?,
             Quantity::ElementStress(which, name) => self.in_element(*which, name)?,
+            Quantity::Stresses(over, which, body) => self.extreme_stress(*over, *which, body.as_deref())?.0,
             Quantity::Load(which, name) => self.of_load(*which, name)?,
             Quantity::Critical(parameter) => self.critical(parameter)?,
         };
         Value::finite(number)
+    }
+
+    /// The node or pair at which a largest or least value stands; none where it is 0, which is nowhere more than elsewhere.
+    pub fn place(&self, quantity: &Quantity) -> Option<String> {
+        let (value, place) = match quantity {
+            Quantity::Probe(_, inner) => return self.place(inner),
+            Quantity::Stage(stage, inner) => {
+                let history = self.history.filter(|history| *stage <= history.stages.len())?;
+                return self.at_stage(history, stage - 1).place(inner);
+            }
+            Quantity::Pairs(over, which, pattern) if *over != Over::Sum => {
+                self.of_pairs(*over, *which, pattern).map(|(value, pair)| (value, pair.to_owned()))
+            }
+            Quantity::LargestDisplacement => self.largest_displacement(),
+            Quantity::Stresses(over, which, body) => self.extreme_stress(*over, *which, body.as_deref()),
+            _ => return None,
+        }
+        .ok()?;
+        (value != 0.0).then_some(place)
     }
 }
 

@@ -50,8 +50,11 @@ impl Facts<'_> {
         Ok(self.displacements()?.0[at][component as usize])
     }
 
-    /// The largest displacement.
-    pub(super) fn largest_displacement(&self) -> Result<f64, NoValue> {
-        Ok(self.displacements()?.0.iter().map(|&[x, y, z, ..]| length([x, y, z])).fold(0.0, f64::max))
+    /// The largest displacement, and the first node at which it stands.
+    pub(super) fn largest_displacement(&self) -> Result<(f64, String), NoValue> {
+        let (structure, u) = (self.structure()?.0, self.displacements()?);
+        let sizes = u.0.iter().map(|&[x, y, z, ..]| length([x, y, z])).zip(&structure.nodes);
+        let most = sizes.reduce(|most, next| if next.0 > most.0 { next } else { most });
+        most.map(|(size, node)| (size, node.id.clone())).ok_or_else(|| self.missing())
     }
 }

@@ -33,12 +33,16 @@ impl<'a> Facts<'a> {
         if chosen.is_empty() { Err(self.missing()) } else { Ok(chosen) }
     }
 
-    pub(super) fn of_pairs(&self, over: Over, which: OfPair, pattern: &str) -> Result<f64, NoValue> {
-        let chosen = self.chosen(pattern)?.into_iter().map(|pair| which.of(pair));
+    /// The sum, or an extreme and the first pair at which it stands.
+    pub(super) fn of_pairs(&self, over: Over, which: OfPair, pattern: &str) -> Result<(f64, &'a str), NoValue> {
+        let chosen = self.chosen(pattern)?;
+        let better = |a: f64, b: f64| if over == Over::Max { a > b } else { a < b };
+        let values = chosen.iter().map(|pair| (which.of(pair), pair.id.as_str())).filter(|(value, _)| !value.is_nan());
         Ok(match over {
-            Over::Sum => balance(chosen),
-            Over::Max => chosen.fold(f64::NEG_INFINITY, f64::max),
-            Over::Min => chosen.fold(f64::INFINITY, f64::min),
+            Over::Sum => (balance(chosen.iter().map(|pair| which.of(pair))), ""),
+            Over::Max | Over::Min => values
+                .reduce(|best, next| if better(next.0, best.0) { next } else { best })
+                .ok_or_else(|| self.missing())?,
         })
     }
 

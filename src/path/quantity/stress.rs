@@ -1,11 +1,13 @@
 //! Stresses of membranes and solids, and the state over the whole structure.
 
+use std::collections::HashSet;
+
 use super::facts::Facts;
-use super::value::NoValue;
+use super::value::{NoValue, none};
 use crate::answer::record::{MemberForces, PairState};
 use crate::answer::stress::{Stress, StressPlace};
 use crate::fem::{ElementStress, NodeStress};
-use crate::model::quantity::OfStress;
+use crate::model::quantity::{OfStress, Over};
 use crate::model::structure::Structure;
 
 /// A state over the whole structure: at every node, in every element and pair.
@@ -40,6 +42,36 @@ impl Facts<'_> {
         let found = self.element_stresses()?.into_iter().find(|stress| stress.element == element);
         let found = found.ok_or_else(|| self.missing())?;
         Ok(Stress::new(structure.dimension, StressPlace::Element(name.to_owned()), found.stress).value(which))
+    }
+
+    /// The largest or least of a stress over the nodes of areas and solids, each the mean of the elements around it, and
+    /// the first node at which it stands.
+    pub(super) fn extreme_stress(
+        &self,
+        over: Over,
+        which: OfStress,
+        body: Option<&str>,
+    ) -> Result<(f64, String), NoValue> {
+        let (structure, _) = self.structure()?;
+        let inside = body.map(|body| {
+            let elements = structure.elements_of_body(body).unwrap_or_default();
+            let nodes = elements.iter().flat_map(|&element| &structure.elements[element].nodes);
+            nodes.copied().collect::<HashSet<usize>>()
+        });
+        let mut best: Option<(f64, usize)> = None;
+        for at in self.node_stresses()? {
+            if inside.as_ref().is_some_and(|inside| !inside.contains(&at.node)) {
+                continue;
+            }
+            let id = structure.nodes[at.node].id.clone();
+            let value = Stress::new(structure.dimension, StressPlace::Node(id), at.stress).value(which);
+            let is_better = best.is_none_or(|(best, _)| if over == Over::Min { value < best } else { value > best });
+            best = if is_better { Some((value, at.node)) } else { best };
+        }
+        match best {
+            Some((value, node)) => Ok((value, structure.nodes[node].id.clone())),
+            None => none("no plate, quad, triangle or solid in the structure"),
+        }
     }
 
     fn node_stresses(&self) -> Result<Vec<NodeStress>, NoValue> {

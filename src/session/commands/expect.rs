@@ -144,7 +144,8 @@ impl Session {
     }
 
     fn expect(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
-        if let Some((subject, rest)) = words.split_first().filter(|(first, _)| SAMPLED.contains(&first.as_str())) {
+        let apart = expect::apart(words, |_| false);
+        if let Some((subject, rest)) = apart.split_first().filter(|(first, _)| SAMPLED.contains(&first.as_str())) {
             let bound = expect::bound(rest, &self.now.values)?;
             let sampled = self.need_sample()?;
             let found = if subject == SAMPLED[0] { sampled.collapse } else { sampled.undecided };
@@ -154,7 +155,7 @@ impl Session {
             }
             return Ok(io.say(&format!("as expected: {}", words.join(" ")))?);
         }
-        if let Some((_, rest)) = words.split_first().filter(|(first, _)| *first == "result") {
+        if let Some((_, rest)) = apart.split_first().filter(|(first, _)| *first == "result") {
             self.expect_result(rest)?;
             return Ok(io.say(&format!("as expected: {}", words.join(" ")))?);
         }

@@ -7,8 +7,8 @@ use serde_json::{Map, Value as Json, json};
 use crate::export::{history as history_export, json as json_export};
 use crate::model::quantity::{self, Names, Quantity};
 use crate::model::units::Units;
-use crate::path::quantity::{Facts, NoValue, Resultant, Value};
-use crate::view;
+use crate::path::quantity::{Facts, Resultant, Value};
+use crate::view::quantities as quantities_view;
 use crate::watch::{Quiet, Watch};
 
 use crate::session::language::command::{Action, Command};
@@ -58,15 +58,18 @@ struct Row {
     value: Json,
     unit: Option<String>,
     reason: Option<String>,
+    /// Where an extreme stands.
+    at: Option<String>,
 }
 
 impl Row {
-    fn of(quantity: &Quantity, value: &Result<Value, NoValue>, units: &Units) -> Row {
+    fn of((quantity, value, at): &quantities_view::Shown, units: &Units) -> Row {
         Row {
             quantity: quantity.to_string(),
             value: value.as_ref().map_or(Json::Null, Value::json),
             unit: quantity.unit(units),
             reason: value.as_ref().err().map(|reason| reason.0.clone()),
+            at: at.clone(),
         }
     }
 }
@@ -103,17 +106,18 @@ impl Session {
     /// `show QUANTITY …`; without one, all probes.
     pub(in crate::session) fn show(&self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let quantities = if words.is_empty() { self.all_probes()? } else { self.quantities(words)? };
-        let values: Vec<(Quantity, Result<Value, NoValue>)> = self.with_facts(io.watch, |facts| {
-            quantities.into_iter().map(|quantity| (quantity.clone(), facts.value(&quantity))).collect()
+        let values: Vec<quantities_view::Shown> = self.with_facts(io.watch, |facts| {
+            let of = |quantity: Quantity| (quantity.clone(), facts.value(&quantity), facts.place(&quantity));
+            quantities.into_iter().map(of).collect()
         });
         if io.watch.stop() {
             return Err(CommandError::Interrupted);
         }
         let units = &self.now.scenario.units;
-        let rows: Vec<Row> = values.iter().map(|(quantity, value)| Row::of(quantity, value, units)).collect();
+        let rows: Vec<Row> = values.iter().map(|shown| Row::of(shown, units)).collect();
         io.show(&rows, |out, style| {
             self.write_place_shown(out, style)?;
-            view::quantities::write(out, &values, units, style)
+            quantities_view::write(out, &values, units, style)
         })?;
         Ok(())
     }

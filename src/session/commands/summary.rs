@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
 use crate::answer::record::Reaction;
-use crate::model::quantity::{BarPlace, Internal, Names, OfPair, Over, Quantity};
+use crate::model::quantity::{BarPlace, Internal, Names, OfPair, OfStress, Over, Quantity};
 use crate::model::structure::Dimension;
 use crate::path::quantity::{Facts, NoValue, Resultant, Value};
 use crate::view;
@@ -163,19 +163,18 @@ fn peaks(facts: &Facts<'_>, names: &Names<'_>) -> Vec<Peak> {
             at: if value == 0.0 { String::new() } else { at },
         })
     };
-    let displacement = facts.value(&Quantity::LargestDisplacement).ok().and_then(|value| value.number());
-    let displacement = displacement.map(|value| Peak {
-        what: "displacement",
-        quantity: Quantity::LargestDisplacement,
-        value,
-        at: String::new(),
-    });
+    let of_all = |what: &'static str, quantity: Quantity| {
+        let value = facts.value(&quantity).ok()?.number()?;
+        let at = facts.place(&quantity).unwrap_or_default();
+        Some(Peak { what, quantity, value, at })
+    };
     [
         largest("compressive force", OfPair::NormalForce),
         largest("friction force", OfPair::FrictionForce),
         largest("slip", OfPair::Slip),
         largest("opening", OfPair::Opening),
-        displacement,
+        of_all("displacement", Quantity::LargestDisplacement),
+        of_all("von Mises stress", Quantity::Stresses(Over::Max, OfStress::Mises, None)),
     ]
     .into_iter()
     .chain(Internal::of(names.dimension == Dimension::Space).iter().map(|which| bars(*which)))

@@ -32,6 +32,8 @@ pub struct Vocabulary {
     pub probes: Vec<String>,
     /// Ids of triangles and quads.
     pub elements: Vec<String>,
+    /// Plates, bricks, meshes and their parts.
+    pub bodies: Vec<String>,
     /// Load combinations.
     pub combinations: Vec<String>,
     /// Where the pairs and the nodes lie.
@@ -55,6 +57,7 @@ impl Vocabulary {
                 names.nodes = structure.nodes.iter().map(|node| node.id.clone()).collect();
                 names.bars = structure.bars.iter().map(|bar| bar.id.clone()).collect();
                 names.elements = structure.named_elements.iter().map(|(id, _)| id.clone()).collect();
+                names.bodies = structure.bodies().into_iter().map(str::to_owned).collect();
                 names.cases = structure.load_cases.iter().map(|case| case.name.clone()).collect();
             }
             Source::ContactSystem(system) => {

@@ -208,6 +208,7 @@ mod tests {
             joints: vec!["joint".into()],
             probes: vec!["nozzle moment".into()],
             elements: vec!["q1".into()],
+            bodies: vec!["lower".into()],
             combinations: vec!["ULS1".into()],
             dimension: Dimension::Plane,
         }

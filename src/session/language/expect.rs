@@ -137,7 +137,16 @@ pub fn read(words: &[String], names: &Names<'_>, values: &ParameterValues) -> Re
     {
         *word = "class".to_owned();
     }
+    // As they stand first: a probe with blanks in its name may have a sign in it.
+    let is_read = match quantity::read(&words, names) {
+        Ok((_, rest)) => rest.first().is_none_or(|word| word.starts_with(['=', '<', '>', '!'])),
+        Err(_) => false,
+    };
+    if !is_read {
+        words = apart(&words, |word| names.has(word));
+    }
     let (quantity, rest) = quantity::read(&words, names).map_err(|error| bad(error.to_string()))?;
+    let rest = &apart(rest, |_| false)[..];
     if !quantity.is_word() {
         return Ok(Expectation::Number { quantity, bound: bound(rest, values)? });
     }
@@ -148,6 +157,33 @@ pub fn read(words: &[String], names: &Names<'_>, values: &ParameterValues) -> Re
     };
     let word = one_of(quantity.word(), rest)?;
     Ok(Expectation::Word { quantity, word, equal })
+}
+
+/// The signs of comparisons, those first that begin as another.
+const SIGNS: [(&str, Operator); 7] = [
+    ("<=", Operator::LessEqual),
+    (">=", Operator::GreaterEqual),
+    ("!=", Operator::NotEqual),
+    ("==", Operator::Equal),
+    ("=", Operator::Equal),
+    ("<", Operator::Less),
+    (">", Operator::Greater),
+];
+
+/// The words with the first sign of a comparison in a word of its own: `ux C=0` as `ux C = 0`. A sign in a name is a part
+/// of that name.
+pub fn apart(words: &[String], is_name: impl Fn(&str) -> bool) -> Vec<String> {
+    let sign = |text: &str| SIGNS.iter().map(|(sign, _)| *sign).find(|sign| text.starts_with(sign));
+    for (k, word) in words.iter().enumerate().filter(|(_, word)| !is_name(word)) {
+        let signs: Vec<(usize, &str)> =
+            word.char_indices().filter_map(|(at, _)| Some((at, sign(&word[at..])?))).collect();
+        let behind_name = signs.iter().rev().find(|(at, _)| is_name(&word[..*at]));
+        let Some(&(at, sign)) = behind_name.or(signs.first()) else { continue };
+        let parts = [&word[..at], sign, &word[at + sign.len()..]];
+        let parts = parts.into_iter().filter(|part| !part.is_empty()).map(str::to_owned);
+        return words[..k].iter().cloned().chain(parts).chain(words[k + 1..].iter().cloned()).collect();
+    }
+    words.to_vec()
 }
 
 /// A number, or a formula of the parameters.
@@ -178,17 +214,8 @@ pub fn bound(words: &[String], values: &ParameterValues) -> Result<Bound, Expect
         Ok(value) => Err(ExpectationSyntax { what: format!("`{}` is {value}, not a finite number", part.trim()) }),
         Err(message) => Err(ExpectationSyntax { what: format!("`{}`: {message}", part.trim()) }),
     };
-    let operators = [
-        ("<=", Operator::LessEqual),
-        (">=", Operator::GreaterEqual),
-        ("!=", Operator::NotEqual),
-        ("==", Operator::Equal),
-        ("=", Operator::Equal),
-        ("<", Operator::Less),
-        (">", Operator::Greater),
-    ];
     let (operator, rest) =
-        operators.iter().find_map(|(sign, operator)| Some((*operator, text.strip_prefix(sign)?))).ok_or_else(bad)?;
+        SIGNS.iter().find_map(|(sign, operator)| Some((*operator, text.strip_prefix(sign)?))).ok_or_else(bad)?;
     let (value, tolerance) = match rest.split_once('±').or_else(|| rest.split_once("+-")) {
         Some((value, tolerance)) => (value, Some(tolerance)),
         None => (rest, None),
@@ -330,6 +357,12 @@ mod tests {
             ("p >= 20", 20.0, true),
             ("p != 20", 20.0, false),
             ("p = 20", 20.0, true),
+            ("p<1e-9", 1e-10, true),
+            ("p>=20", 20.0, true),
+            ("p!=20", 20.0, false),
+            ("p=100±1%", 100.9, true),
+            ("p <=20", 20.0, true),
+            ("p< 20", 20.0, false),
         ] {
             let Ok(Expectation::Number { bound, .. }) = read(text) else {
                 panic!("{text}");
@@ -338,6 +371,28 @@ mod tests {
         }
         for text in ["p", "p 3", "p = ", "p = x", "p < 1 ± 2", "p = 1 ± -2", "p = inf", "p = 1 ± inf", "p = 1/0"] {
             assert!(read(text).is_err(), "{text}");
+        }
+    }
+
+    /// `a=1` and `c<` are names here, `a` and `c` too.
+    #[test]
+    fn signs_stand_apart_from_names() {
+        let names = ["a", "a=1", "c", "c<", "joint[0]"];
+        for (typed, expected) in [
+            ("ux a=0", "ux|a|=|0"),
+            ("ux a=1", "ux|a=1"),
+            ("ux a=1=3", "ux|a=1|=|3"),
+            ("ux c<3", "ux|c|<|3"),
+            ("ux c<<3", "ux|c<|<|3"),
+            ("ux c<=3", "ux|c<|=|3"),
+            ("ux c >=3", "ux|c|>=|3"),
+            ("x_n joint[0]!=2*f", "x_n|joint[0]|!=|2*f"),
+            ("state c==open", "state|c|==|open"),
+            ("ux a = 0", "ux|a|=|0"),
+            ("N d<2<3", "N|d|<|2<3"),
+        ] {
+            let words: Vec<String> = typed.split(' ').map(str::to_owned).collect();
+            assert_eq!(apart(&words, |word| names.contains(&word)).join("|"), expected, "{typed}");
         }
     }
 

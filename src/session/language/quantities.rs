@@ -1,6 +1,6 @@
 //! Quantities in the language: the table of `help show`, and what may follow their words.
 
-use crate::model::quantity::{self, Meaning, WORDS, Word, states_of, words_of};
+use crate::model::quantity::{self, Meaning, Over, WORDS, Word, states_of, words_of};
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::tokens;
 use crate::view::style::Style;
@@ -14,8 +14,8 @@ pub fn help() -> String {
     });
     let rows: Vec<String> = rows.collect();
     format!(
-        "Quantities:\n{}\n\nPATTERN is a pair, an edge contact, or has `*` for any letters:\nsum x_n joint[*]. The probes of \
-         the scenario are quantities by their names;\nquote names with blanks.",
+        "Quantities:\n{}\n\nPATTERN is a pair, an edge contact, or has `*` for any letters:\nsum x_n joint[*]; BODY is a plate, a brick, a mesh or \
+         a part of one. The probes\nof the scenario are quantities by their names; quote names with blanks.",
         rows.join("\n")
     )
 }
@@ -61,6 +61,7 @@ impl Asked<'_> {
             (Meaning::Pair(_), []) if over => pairs(),
             (Meaning::Pair(_) | Meaning::State, []) => Candidate::plain(&names.pairs),
             (Meaning::Node(_), []) => Candidate::plain(&names.nodes),
+            (Meaning::Stress(_), []) if over => Candidate::plain(&names.bodies),
             (Meaning::Stress(_), []) => Candidate::plain(names.nodes.iter().chain(&names.elements)),
             (Meaning::Bar(_), []) => Candidate::plain(&names.bars),
             (Meaning::Bar(_), [_]) if !over => Candidate::plain(["at", "start", "end"]),
@@ -68,9 +69,14 @@ impl Asked<'_> {
             (Meaning::Resultant, [_]) => Candidate::plain(["N", "T", "e"]),
             (Meaning::Load(_), []) => Candidate::plain(&names.cases),
             (Meaning::Critical, []) => Candidate::plain(names.parameters.iter().map(|(name, _)| name)),
-            (Meaning::Over(_), []) => {
-                let summed = |entry: &&Word| matches!(entry.meaning, Meaning::Pair(_) | Meaning::Bar(_));
-                Candidate::plain(words_of(names.dimension).filter(summed).map(|entry| entry.word).chain(["u"]))
+            (Meaning::Over(how), []) => {
+                let goes_with = |entry: &&Word| match entry.meaning {
+                    Meaning::Pair(_) => true,
+                    Meaning::Bar(_) | Meaning::Stress(_) => how != Over::Sum,
+                    _ => false,
+                };
+                let length = (how == Over::Max).then_some("u");
+                Candidate::plain(words_of(names.dimension).filter(goes_with).map(|entry| entry.word).chain(length))
             }
             (Meaning::Count, []) => Candidate::plain(states_of(names.dimension)),
             (Meaning::Count, [_]) => pairs(),
