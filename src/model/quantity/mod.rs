@@ -3,6 +3,7 @@
 //! A quantity is a word and its arguments. [`words`] has the table of the words, [`read`](mod@read) reads them against
 //! the names of a scenario; the values are read by [`crate::path::quantity`].
 
+mod list;
 mod names;
 mod of_bar;
 mod of_stress;
@@ -13,10 +14,11 @@ use std::fmt;
 
 use super::units::Units;
 
+pub use list::{read_all, read_text};
 pub use names::{Names, fits};
 pub use of_bar::Internal;
 pub use of_stress::OfStress;
-pub use read::{QuantityError, read, read_all, read_text};
+pub use read::{QuantityError, read};
 pub use words::{
     Dimension, Meaning, OfAnswer, OfLoad, OfNode, OfPair, Over, WORDS, Word, displacement_words, entry, pair_words,
     states_of, words_of,
