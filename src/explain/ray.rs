@@ -33,6 +33,9 @@ const NO_ENERGY: f64 = 1e-7;
 const NO_POWER: f64 = NOISE;
 /// Most pairs whose working schemes are all tried to accompany a solution.
 const MOST_PAIRS: usize = 10;
+/// What a collapse means whose motion is that of its proof.
+const OF_PROOF: &str = "The run ended in slips that cancel one another and move nothing; the motion is that of the proof, without \
+                        what opens for its sake only. It costs no energy and the loads do work on it.";
 /// Steps times the cube of the number of joints after which that is given up.
 const MOST_STEPS: u64 = 100_000_000;
 
@@ -70,6 +73,8 @@ pub struct RayReport {
     pub certificate: Option<Certificate>,
     /// Another one: parts that do not fit together.
     pub misfit: Option<Misfit>,
+    /// Whether the motion is that of the certificate, since the run ended in slips that cancel one another.
+    pub of_proof: bool,
     /// Whether the search for a proof was given up when its time was used up.
     pub out_of_time: bool,
     /// The motion of the structure behind the certificate; found by [`explain`].
@@ -168,6 +173,7 @@ pub fn certify_ray(report: &mut RayReport, problem: &ContactProblem, built: Buil
     if report.certificate.is_none() {
         report.misfit = misfit(problem);
     }
+    report.take_motion_of_proof(problem);
     let certified = report.certificate.is_some() || report.misfit.is_some();
     report.verdict = Some(if certified { Verdict::Certified } else { Verdict::Undecided });
     certified
@@ -211,6 +217,11 @@ pub fn all_answers(problem: &ContactProblem, watch: &dyn Watch) -> Option<Enumer
     found.complete.then_some(found)
 }
 
+/// The motion of the collapse that a certificate proves, largest entry 1: pairs that slip stay closed.
+fn collapse_of(problem: &ContactProblem, certificate: &Certificate) -> DVector<f64> {
+    sliding(problem, &certificate.direction).unwrap_or_else(|| direction_of(certificate.direction.clone()))
+}
+
 impl RayReport {
     /// A motion of this class of which nothing else is known yet.
     fn of_motion(class: RayClass, direction: DVector<f64>) -> RayReport {
@@ -225,6 +236,7 @@ impl RayReport {
             powers: Vec::new(),
             certificate: None,
             misfit: None,
+            of_proof: false,
             out_of_time: false,
             certificate_mode: None,
             balanced: false,
@@ -243,13 +255,23 @@ impl RayReport {
     /// A collapse on Coulomb's cone where the run on the polygon ended in an answer: the motion of its certificate, where
     /// pairs that slip stay closed.
     pub fn of_certificate(problem: &ContactProblem, certificate: Certificate) -> RayReport {
-        let direction = sliding(problem, &certificate.direction);
-        let direction = direction.unwrap_or_else(|| direction_of(certificate.direction.clone()));
+        let direction = collapse_of(problem, &certificate);
         RayReport {
             verdict: Some(Verdict::Certified),
             powers: powers(problem, &direction),
             certificate: Some(certificate),
             ..RayReport::of_motion(RayClass::Mechanism, direction)
+        }
+    }
+
+    /// Close to the limit a run may end in slips along several facets that cancel one another. Where no pair moves then, the
+    /// collapse is the motion of its certificate, where there is one.
+    fn take_motion_of_proof(&mut self, problem: &ContactProblem) {
+        if let Some(certificate) = self.certificate.as_ref().filter(|_| self.direction.amax() == 0.0) {
+            let direction = collapse_of(problem, certificate);
+            (self.class, self.of_proof) = (RayClass::Mechanism, true);
+            self.powers = powers(problem, &direction);
+            self.direction = direction;
         }
     }
 
@@ -359,6 +381,7 @@ impl RayReport {
         // In force form p adds to distances too and to some reserves twice: it is not the force that is missing.
         let forced = system.force_form.is_some();
         let mut text = match (self.class == RayClass::Mechanism, forced) {
+            _ if self.of_proof => OF_PROOF.to_owned(),
             _ if self.driver.is_empty() && self.misfit.is_some() => {
                 "There is an answer only if joints that repeat one another yield.".to_owned()
             }
@@ -379,7 +402,7 @@ impl RayReport {
                 "The run found no state that obeys the laws of contact; its direction is not a pure mechanism.".to_owned()
             }
         };
-        if forced {
+        if forced && !self.of_proof {
             text += &format!(
                 " It ended at p = {p}; where joints repeat one another this adds to distances as well as to forces: it is \
                  not the force that is missing."
@@ -464,29 +487,5 @@ impl RayReport {
 }
 
 #[cfg(test)]
-mod tests {
-    use nalgebra::DMatrix;
-
-    use super::*;
-    use crate::contact::full_lcp::tests::{coulomb, coulomb_in_space};
-
-    /// In space a pair has more than two reserves and no z+ and z-.
-    #[test]
-    fn an_artefact_is_told_in_the_words_of_its_dimension() {
-        for (system, slips) in [
-            (coulomb(DMatrix::identity(2, 2)), "slip in both directions"),
-            (coulomb_in_space(DMatrix::identity(3, 3)), "slip along all of these facets"),
-        ] {
-            let none = DVector::zeros(system.joint_count());
-            let report = RayReport { artefact: Some(0), ..RayReport::of_motion(RayClass::Artefact, none) };
-            for covering in [Covering::Ones, Covering::Weight] {
-                let ray = report.record(&system, covering);
-                assert!(ray.explanation.contains(slips), "{}", ray.explanation);
-                for word in ["z+ and z-", "both", "two"] {
-                    let of_plane = [&ray.mode, &ray.explanation].iter().any(|text| text.contains(word));
-                    assert!(!of_plane || system.tangents == 1, "{}: {}", ray.mode, ray.explanation);
-                }
-            }
-        }
-    }
-}
+#[path = "ray_tests.rs"]
+mod tests;

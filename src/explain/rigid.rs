@@ -7,8 +7,11 @@ use crate::model::vector::{cross, dot, length, unit, way};
 use crate::text::number::short as number;
 use crate::text::words::short;
 
-/// Shares of the largest displacement below which motions are alike, and rotations count as none.
+/// Shares of the largest displacement below which motions are alike.
 const ALIKE: f64 = 1e-6;
+/// A rotation by which no place of the structure moves otherwise than another by more than this share of the largest
+/// displacement is a translation: its axis would lie some 1e4 times the structure away, and where is rounding.
+const FAR: f64 = 1e-4;
 
 /// A small rigid motion: displacement of the origin, and rotation vector (right-handed, its length the angle).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,8 +65,9 @@ impl Fitted {
     /// What it is; an axis in space is given by its point nearest to `centre`.
     pub fn describe(&self, centre: [f64; 3], extent: f64, largest: f64) -> RigidMotion {
         let angle = length(self.turn);
-        if angle * extent <= ALIKE * largest {
-            return RigidMotion::Translation(self.shift);
+        if angle * extent <= FAR * largest {
+            let at_centre = cross(self.turn, centre);
+            return RigidMotion::Translation(std::array::from_fn(|c| self.shift[c] + at_centre[c]));
         }
         let axis = self.turn.map(|entry| entry / angle);
         // u = shift + turn × x is parallel to the axis on it
@@ -195,6 +199,15 @@ mod tests {
         assert_eq!(twist, "rotation of `b` about the axis through (1.0, 1.0, 1.0) along -z");
         let screw = words(&CUBE, [0.0, 0.0, 0.25], [0.0, 0.0, 0.5], [1.0, 0.5, 0.0]);
         assert_eq!(screw, "screw of `b` about the axis through (1.0, 0.5, 1.0) along +z, 0.5 along it per radian");
+    }
+
+    /// Rounding turns a cube of size 2 that slides about an axis some 1e6 away: it slides. One about an axis 200 away turns.
+    #[test]
+    fn a_rotation_about_an_axis_far_away_is_a_translation() {
+        let (s, c) = 30.0_f64.to_radians().sin_cos();
+        let about = |away: f64| words(&CUBE, [0.0; 3], [0.0, 0.0, -1.0 / away], [1.0 + away * s, 1.0 - away * c, 0.0]);
+        assert_eq!(about(1e6), "rigid translation of `b` along 30° from x to y");
+        assert!(about(200.0).starts_with("rotation of `b` about the axis through (101"), "{}", about(200.0));
     }
 
     /// The nodes of a bar do not show how it turns about itself; its rotations do.
