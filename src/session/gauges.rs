@@ -1,7 +1,10 @@
 //! What a face shows all the time: quantities of the state shown, beside what its commands print.
 
+use std::sync::Arc;
+
 use crate::model::quantity::{self, Quantity};
 use crate::path::quantity::Facts;
+use crate::solve::Prepared;
 use crate::view;
 use crate::view::style::Role;
 use crate::watch::Watch;
@@ -76,5 +79,10 @@ impl Session {
     /// The combination whose answer is shown in the place of the scenario's own.
     pub fn combination(&self) -> Option<&str> {
         self.combination.as_ref().map(|(name, _)| name.as_str())
+    }
+
+    /// The geometry with the factors of what is shown: those of a combination, or the scenario's own.
+    pub(super) fn prepared_shown(&self) -> Option<&Arc<Prepared>> {
+        self.combination.as_ref().map(|(_, combined)| combined).or(self.now.prepared.as_ref())
     }
 }

@@ -111,8 +111,9 @@ impl Session {
         }
     }
 
-    /// Writes [`Session::place_shown`] beside a table, if there is one.
+    /// Writes beside a table which combination is shown, and [`Session::place_shown`], if there is one.
     pub(super) fn write_place_shown(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        self.write_combination(out, style)?;
         self.place_shown().map_or(Ok(()), |place| style.paragraph(out, Role::Muted, &place))
     }
 
@@ -124,8 +125,13 @@ impl Session {
         })
     }
 
-    /// Writes [`Session::history_place`] ahead of a table that knows no pivots, if there is one.
+    fn write_combination(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        self.combination().map_or(Ok(()), |name| style.paragraph(out, Role::Muted, &format!("of combination {name}")))
+    }
+
+    /// Writes ahead of a table that knows no pivots which combination is shown, and [`Session::history_place`], if there is one.
     pub(super) fn write_history_place(&self, out: &mut dyn Write, style: &Style) -> io::Result<()> {
+        self.write_combination(out, style)?;
         self.history_place().map_or(Ok(()), |place| style.paragraph(out, Role::Muted, &place))
     }
 

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::view::style::Style;
+use crate::view::style::{Role, Style};
 use crate::watch::Watch;
 
 /// What the results look like.
@@ -96,6 +96,14 @@ impl<'a> Output<'a> {
                 self.report = Some(serde_json::to_value(result)?);
                 Ok(())
             }
+        }
+    }
+
+    /// Says ahead of a result for people what it is of.
+    pub(super) fn remark(&mut self, text: &str) -> io::Result<()> {
+        match self.format {
+            Format::Text => self.style.paragraph(self.out, Role::Muted, text),
+            Format::JsonLines | Format::Values => Ok(()),
         }
     }
 

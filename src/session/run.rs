@@ -113,6 +113,12 @@ impl Session {
         if action.needs_pivots() {
             self.ensure_pivots(io)?;
         }
+        if action.is_of_own_factors(self)
+            && let Some(name) = self.combination()
+        {
+            let note = format!("of the load cases with their own factors; the tables are those of combination {name}");
+            io.remark(&note)?;
+        }
         action.run(self, text, io)
     }
 }

@@ -26,11 +26,11 @@ pub(in crate::session) fn case_names(prepared: &Prepared) -> Vec<String> {
 }
 
 impl Session {
-    /// The present setup, solved.
+    /// The present setup, solved; with the factors that the scenario gives, also where a combination is shown.
     pub(in crate::session) fn ground(&self, watch: &dyn Watch) -> Result<PathStart, CommandError> {
         let mut setup = self.now.clone();
         let solved = match (&self.solved, &setup.prepared) {
-            (Some(solved), Some(_)) => Arc::clone(solved),
+            (Some(solved), Some(_)) if self.combination.is_none() => Arc::clone(solved),
             _ => setup.solve(watch)?,
         };
         let prepared = setup

@@ -186,6 +186,42 @@ fn combinations_multiply_the_factors_of_their_cases() {
     assert!(error.unwrap_err().contains("the scenario has no `combinations`"));
 }
 
+/// With f = 0.4 the block slides at H = f W = 4; in `storm`, which multiplies W by 2 f and H by 1.5, the push of 3 may grow to
+/// f · 2 f W = 3.2. What asks about the load case means what is shown; what varies numbers of the file says that it does not.
+#[test]
+fn commands_say_whether_they_mean_the_combination_that_is_shown() {
+    let mut session = read(TWO);
+    told(&mut session, "set f 0.4").unwrap();
+    told(&mut session, "combine storm").unwrap();
+    let own = "of the load cases with their own factors; the tables are those of combination storm";
+    let near = |value: &Value, number: f64| value.as_f64().is_some_and(|found| (found - number).abs() < 1e-9);
+    let limit = report(&mut session, "limit push");
+    assert!(near(&limit["limit"], 3.2) && near(&limit["present"], 3.0), "{limit}");
+    expect(&mut session, "limit push = 3.2 ± 1e-9");
+    let summary = report(&mut session, "summary");
+    let push = summary["safety"].as_array().unwrap().iter().find(|one| one["case"] == "push").unwrap();
+    assert!(near(&push["limit"], 3.2) && near(&push["safety"], 3.2 / 3.0), "{push}");
+    let limit = report(&mut session, "limit H");
+    assert!(near(&limit["limit"], 4.0) && near(&limit["present"], 2.0), "{limit}");
+    for command in ["limit push", "summary", "show limit push", "pairs", "reactions"] {
+        let text = told(&mut session, command).unwrap();
+        assert!(text.contains("of combination storm") && !text.contains(own), "{command}: {text}");
+    }
+    for command in
+        ["limit H", "trace H to 3", "find H 0..5 where max z_t > 1", "sensitivity", "envelope tilt over H 0..3"]
+    {
+        let text = told(&mut session, command).unwrap().replace('\n', " ");
+        assert!(text.starts_with(own), "{command}: {text}");
+    }
+    let text = told(&mut session, "envelope tilt over combinations").unwrap();
+    assert!(!text.contains(own), "{text}");
+    told(&mut session, "solve").unwrap();
+    for command in ["limit push", "summary", "trace H to 3"] {
+        let text = told(&mut session, command).unwrap();
+        assert!(!text.contains("storm"), "{command}: {text}");
+    }
+}
+
 #[test]
 fn the_envelope_names_what_governs() {
     let mut session = read(TWO);

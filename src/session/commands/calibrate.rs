@@ -43,6 +43,10 @@ impl Action for Calibrate {
         session.calibrate(&self.words, io)?;
         Ok(Next::Continue)
     }
+
+    fn is_of_own_factors(&self, _: &Session) -> bool {
+        true
+    }
 }
 
 fn words(asked: &Asked<'_>) -> Vec<Candidate> {

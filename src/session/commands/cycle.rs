@@ -50,6 +50,10 @@ impl Action for Repeated {
         session.cycle(&self.words, io)?;
         Ok(Next::Continue)
     }
+
+    fn is_of_own_factors(&self, _: &Session) -> bool {
+        true
+    }
 }
 
 fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {

@@ -38,6 +38,10 @@ impl Action for Envelope {
         session.envelope(&self.words, io)?;
         Ok(Next::Continue)
     }
+
+    fn is_of_own_factors(&self, _: &Session) -> bool {
+        self.words.iter().skip_while(|word| *word != "over").nth(1).is_some_and(|what| what != "combinations")
+    }
 }
 
 /// Quantities; after `over` what they are looked at over.

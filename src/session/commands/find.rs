@@ -43,6 +43,10 @@ impl Action for Find {
         session.find(&self.words, io)?;
         Ok(Next::Continue)
     }
+
+    fn is_of_own_factors(&self, _: &Session) -> bool {
+        true
+    }
 }
 
 /// `least` or `most`, the parameter or load case, `where`, the condition.

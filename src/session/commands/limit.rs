@@ -1,5 +1,7 @@
 //! `limit`: how far a load can grow.
 
+use std::sync::Arc;
+
 use clap::Args;
 use serde::Serialize;
 
@@ -10,7 +12,7 @@ use crate::path::record::PathRecord;
 use crate::path::start::PathError;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
-use crate::session::start::case_names;
+use crate::session::start::{PathStart, case_names};
 use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
 
@@ -55,6 +57,10 @@ impl Action for Limit {
     fn needs_pivots(&self) -> bool {
         true
     }
+
+    fn is_of_own_factors(&self, session: &Session) -> bool {
+        !matches!(&self.words[..], [name] if session.combined_case(name).is_some())
+    }
 }
 
 #[derive(Serialize)]
@@ -69,7 +75,22 @@ struct LimitReport<'a> {
     end: String,
 }
 
+/// A combination that is shown, and its answer.
+struct OfCombination {
+    name: String,
+    ground: PathStart,
+}
+
 impl Session {
+    /// The combination that is shown, where this is one of its load cases; with its factors as numbers a parameter
+    /// moves none of them.
+    fn combined_case(&self, name: &str) -> Option<OfCombination> {
+        let ((combination, prepared), solved) = (self.combination.as_ref()?, self.solved.as_ref()?);
+        let ground = PathStart { setup: self.now.clone(), prepared: Arc::clone(prepared), solved: Arc::clone(solved) };
+        let is_case = prepared.cases.iter().any(|(known, _)| known == name);
+        is_case.then(|| OfCombination { name: combination.clone(), ground })
+    }
+
     /// That one load is expected, and which ones there are.
     fn no_load(&self) -> CommandError {
         let known = self.now.prepared.as_ref().map_or_else(String::new, |prepared| known(prepared, &self.now.scenario));
@@ -80,7 +101,13 @@ impl Session {
 
     /// `limit LOAD`.
     pub(in crate::session) fn limit(&mut self, name: &str, io: &mut Output<'_>) -> Result<(), CommandError> {
-        let ground = self.ground(io.watch)?;
+        let ground = match self.combined_case(name) {
+            Some(combined) => {
+                io.remark(&format!("of combination {}, with its factors", combined.name))?;
+                combined.ground
+            }
+            None => self.ground(io.watch)?,
+        };
         let cases = case_names(&ground.prepared);
         let what = name.to_owned();
         let found = worker::run(io.watch, move |watch| limit::limit(ground.case(watch), Some(&ground.solved), &what))?;

@@ -44,6 +44,10 @@ impl Action for Map {
         session.draw_map(&self.words, io)?;
         Ok(Next::Continue)
     }
+
+    fn is_of_own_factors(&self, _: &Session) -> bool {
+        true
+    }
 }
 
 /// Two parameters or load cases with their ranges; after `of` a quantity.

@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use serde_json::Value as Json;
 
-use crate::model::quantity::Quantity;
+use crate::model::quantity::{OfAnswer, Quantity};
 use crate::path::grid::{Grid, Shard};
 use crate::path::sample::{self, MOST_SHOWN, Request, Sampled, variable};
 use crate::path::sweep;
@@ -71,6 +71,10 @@ impl Action for Sample {
         session.sample(self, io)?;
         Ok(Next::Continue)
     }
+
+    fn is_of_own_factors(&self, _: &Session) -> bool {
+        true
+    }
 }
 
 /// Parameters with the beginning of a distribution; after `of` quantities.
@@ -123,7 +127,13 @@ impl Session {
             return refused("sample: expected a quantity after `of`, e.g. `sample f=uniform(0.2,0.6) of max u`");
         }
         if let Some(quantity) = quantities.iter().find(|quantity| !quantity.is_of_state()) {
-            return refused(format!("sample: `{quantity}` is not a quantity of a single state"));
+            return refused(match quantity {
+                Quantity::Answer(OfAnswer::Outcome) => {
+                    "sample: the probability of collapse is told by every sample, with and without `of`: leave `outcome` out"
+                        .to_owned()
+                }
+                _ => format!("sample: `{quantity}` is not a quantity of a single state"),
+            });
         }
         let mut request =
             Request { variables: Vec::new(), count: None, seed: asked.seed, quantities, crude: asked.crude };

@@ -31,6 +31,10 @@ impl Action for Sensitivity {
     fn needs_pivots(&self) -> bool {
         true
     }
+
+    fn is_of_own_factors(&self, _: &Session) -> bool {
+        true
+    }
 }
 
 impl Session {

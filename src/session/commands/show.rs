@@ -83,11 +83,10 @@ impl Session {
     /// What quantities are read from: the answer, or its pivot that is shown.
     pub(in crate::session) fn with_facts<T>(&self, watch: &dyn Watch, read: impl FnOnce(&Facts<'_>) -> T) -> T {
         let scenario = &self.now.scenario;
-        let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
+        let (Some(solved), Some(prepared)) = (&self.solved, self.prepared_shown()) else {
             return read(&Facts::of_nothing(scenario, &self.now.values, watch));
         };
-        let shown = self.combination.as_ref().map_or(prepared, |(_, combined)| combined);
-        let facts = Facts::of_answer(self.now.case(shown, watch), solved);
+        let facts = Facts::of_answer(self.now.case(prepared, watch), solved);
         if let Some(history) = &self.followed {
             return read(&facts.of_history(history));
         }

@@ -99,7 +99,7 @@ impl Session {
     pub fn all_answers(&self, watch: &dyn Watch) -> Result<AllAnswers, CommandError> {
         let (prepared, solved) = self.both()?;
         // Where a combination is shown, its factors are in its own geometry.
-        let shown = self.combination.as_ref().map_or(prepared, |(_, there)| Arc::clone(there));
+        let shown = self.prepared_shown().map_or(prepared, Arc::clone);
         let (values, rules) = (self.now.values.clone(), self.now.rules);
         worker::run(watch, move |watch| {
             let Some(system) = shown.system() else {

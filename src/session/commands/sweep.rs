@@ -64,6 +64,10 @@ impl Action for Sweep {
         session.run_sweep(self, io)?;
         Ok(Next::Continue)
     }
+
+    fn is_of_own_factors(&self, _: &Session) -> bool {
+        true
+    }
 }
 
 /// Options may follow the ranges: a range from below zero would be taken for one of them.

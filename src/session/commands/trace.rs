@@ -57,6 +57,10 @@ impl Action for Trace {
     fn needs_pivots(&self) -> bool {
         true
     }
+
+    fn is_of_own_factors(&self, _: &Session) -> bool {
+        true
+    }
 }
 
 /// What is followed, its target, and the quantities on the way.

@@ -55,7 +55,7 @@ struct WhyReport<'a> {
 impl Session {
     /// How far the final scheme holds; empty at a pivot on the way.
     fn margins(&self, id: &str) -> Vec<Margin> {
-        let (Some(prepared), Some(solved), None) = (&self.now.prepared, &self.solved, self.position) else {
+        let (Some(prepared), Some(solved), None) = (self.prepared_shown(), &self.solved, self.position) else {
             return Vec::new();
         };
         let pair = solved.answer.pairs.iter().position(|pair| pair.id == id);

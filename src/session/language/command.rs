@@ -27,6 +27,11 @@ pub trait Action {
         false
     }
 
+    /// Whether it means the load cases with the factors that the scenario gives, also where a combination is shown.
+    fn is_of_own_factors(&self, _: &Session) -> bool {
+        false
+    }
+
     /// Whether the command before it may fail.
     fn expects_error(&self) -> bool {
         false

@@ -98,8 +98,7 @@ impl Session {
 
     /// The load cases with their factors under the combination that is shown, or where the file does not list them.
     fn add_factors(&self, blocks: &mut Vec<Block>) {
-        let Some(prepared) = self.combination.as_ref().map(|(_, combined)| combined).or(self.now.prepared.as_ref())
-        else {
+        let Some(prepared) = self.prepared_shown() else {
             return;
         };
         let is_superelement = self.structure().is_some_and(|structure| structure.superelement.is_some());

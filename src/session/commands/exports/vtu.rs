@@ -39,10 +39,9 @@ impl Session {
         file: &dyn Fn(usize) -> std::path::PathBuf,
         io: &Output<'_>,
     ) -> Result<Vec<f64>, CommandError> {
-        let (Some(solved), Some(prepared)) = (&self.solved, &self.now.prepared) else {
+        let (Some(solved), Some(shown)) = (&self.solved, self.prepared_shown()) else {
             return Err(CommandError::Refused("not solved yet: `solve`, or `set auto on`".to_owned()));
         };
-        let shown = self.combination.as_ref().map_or(prepared, |(_, combined)| combined);
         let pivots = solved.answer.pivots.len();
         few(pivots, "pivots")?;
         for step in 0..pivots {
