@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::pair_record::reserve;
 use super::record::{InSpace, PairState, State};
 use crate::contact::cone::{ConeAnswer, MixedState};
 use crate::contact::force_form::unknowns;
@@ -278,8 +279,8 @@ fn pair_state(
         z_n,
         z_t,
         bound,
-        reserve_plus: bound + x_t,
-        reserve_minus: bound - x_t,
+        reserve_plus: reserve(bound, x_t),
+        reserve_minus: reserve(bound, -x_t),
         position: pair.position,
         joint: pair.joint,
         space: None,
@@ -323,8 +324,8 @@ fn pair_in_space(problem: &ContactProblem, cover: &Cover, state: &JointState, i:
         z_n,
         z_t: size(z_t),
         bound,
-        reserve_plus: bound + friction,
-        reserve_minus: bound - friction,
+        reserve_plus: reserve(bound, friction),
+        reserve_minus: reserve(bound, -friction),
         position: pair.position,
         joint: pair.joint,
         space: Some(InSpace { x_t, z_t, frame: pair.frame }),

@@ -101,12 +101,19 @@ pub fn angle([along, across]: [f64; 2]) -> f64 {
 /// `37°`, `22.5°`: an angle in words.
 pub fn degrees(angle: f64) -> String {
     let text = format!("{angle:.1}");
+    // an angle that is zero to what is written has no sign
+    let text = if text == "-0.0" { "0.0".to_owned() } else { text };
     format!("{}°", text.strip_suffix(".0").unwrap_or(&text))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_angle_of_zero_has_no_sign() {
+        assert_eq!([-1e-9, -0.0, 0.04, -0.06, 180.0].map(degrees), ["0°", "0°", "0°", "-0.1°", "180°"]);
+    }
 
     #[test]
     fn slips_along_facets_sum_up_to_the_slip() {

@@ -79,7 +79,15 @@ pub fn unpressed(scenario: &Scenario, system: &ContactSystem) -> Vec<Warning> {
             }
         }
     }
-    found.into_iter().map(|of| of.warning(&places[of.place])).collect()
+    let later = closes_later(scenario, system);
+    found.into_iter().map(|of| of.warning(&places[of.place], later)).collect()
+}
+
+/// Whether there are stages or gaps > 0: what presses a contact later does not show while every joint is held.
+fn closes_later(scenario: &Scenario, system: &ContactSystem) -> bool {
+    let values = scenario.parameter_values();
+    let is_gap = |(key, number): (&'static str, &Number)| key == "gap" && number.value(&values) > 0.0;
+    !scenario.stages.is_empty() || system.pairs.iter().any(|pair| pair.law.numbers().into_iter().any(is_gap))
 }
 
 /// The pairs of each contact of the file.
@@ -172,7 +180,8 @@ struct Unpressed {
 }
 
 impl Unpressed {
-    fn warning(&self, place: &str) -> Warning {
+    /// `later`: whether gaps or stages may press what nothing presses at first.
+    fn warning(&self, place: &str, later: bool) -> Warning {
         let ids: Vec<String> = self.ids.iter().map(|id| format!("`{id}`")).collect();
         let ids = match &ids[..] {
             [first, .., last] if ids.len() > 3 => format!("{first} … {last} ({} contacts)", ids.len()),
@@ -180,13 +189,20 @@ impl Unpressed {
         };
         let (it, its, carries) =
             if self.ids.len() == 1 { ("it", "its", "it carries") } else { ("them", "their", "they carry") };
-        Warning::new(
-            place,
-            format!("no load case presses {ids}: while every joint is held {}", self.why.replace("{it}", it)),
+        let help = if later {
+            format!(
+                "{carries} only after gaps close, or others slip or open: see by `stages` or `trace` whether that happens"
+            )
+        } else {
             format!(
                 "turn {its} normal round if it does not point from `against` to the node; otherwise {carries} only after \
                  others slip or open"
-            ),
+            )
+        };
+        Warning::new(
+            place,
+            format!("no load case presses {ids}: while every joint is held {}", self.why.replace("{it}", it)),
+            help,
         )
     }
 }

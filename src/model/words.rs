@@ -41,7 +41,7 @@ pub fn no_such<'n>(what: &str, id: &str, known: impl IntoIterator<Item = &'n str
         [only] => format!("no {what} `{id}`{near}: the only {what} is {only}"),
         names => {
             let shown = match names {
-                [first, .., last] if names.len() > 8 => format!("{first} … {last}"),
+                [first, .., last] if names.len() > most_listed(names) => format!("{first} … {last}"),
                 names => names.join(", "),
             };
             // of two kinds of things the last word alone would have its plural
@@ -49,6 +49,11 @@ pub fn no_such<'n>(what: &str, id: &str, known: impl IntoIterator<Item = &'n str
             format!("no {what} `{id}`{near}: {are} {shown}")
         }
     }
+}
+
+/// How many names are all listed: of pairs and nodes with an index the ends tell the rest.
+fn most_listed(names: &[&str]) -> usize {
+    if names.iter().any(|name| name.contains('[')) { 8 } else { 24 }
 }
 
 fn suggestion(near: &[&str], mark: char) -> String {

@@ -52,7 +52,10 @@ pub(super) fn taken(problem: &ContactProblem, polygon: JointState, watch: &dyn W
         Ok(found) => {
             record.cone = true;
             record.newton = Some(found.steps);
-            record.distance = Some(found.distance);
+            // where nothing slips, what the polygon's slips differ by is rounding
+            let slips =
+                problem.system.pairs.iter().any(|pair| pair.tangential.clone().any(|joint| found.z[joint] != 0.0));
+            record.distance = slips.then_some(found.distance);
             Ok(InSpace { state: JointState::on_cone(problem, found), problem: problem.clone(), record, note: None })
         }
         Err(ConeFailure::Stopped) => Err(SolveError::Interrupted),

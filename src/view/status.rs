@@ -386,12 +386,12 @@ fn friction_polygon(polygon: &PolygonRecord) -> String {
     }
     if polygon.newton == Some(0) {
         text += ": its answer stands on Coulomb's cone";
-    } else if let (Some(steps), Some(distance)) = (polygon.newton, polygon.distance) {
+    } else if let Some(steps) = polygon.newton {
         let word = if steps == 1 { "step" } else { "steps" };
-        text += &format!(
-            " · on Coulomb's cone after {steps} Newton {word}, which moved slips by up to {} % of the largest",
-            short(100.0 * distance)
-        );
+        text += &format!(" · on Coulomb's cone after {steps} Newton {word}");
+        if let Some(distance) = polygon.distance {
+            text += &format!(", which moved slips by up to {} % of the largest", short(100.0 * distance));
+        }
     } else if polygon.cone {
         text += " where steps began anew · followed on Coulomb's cone";
     }

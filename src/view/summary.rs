@@ -78,7 +78,8 @@ pub fn resultants_table(resultants: &[Resultant], units: &Units) -> Table {
         Column::numbers("e", length_unit(units)),
     ]);
     for one in resultants {
-        let e = one.eccentricity.map_or_else(|| Cell::new("no force", Role::Muted), Cell::number);
+        let why_none = if one.over_face { "of an edge only" } else { "no force" };
+        let e = one.eccentricity.map_or_else(|| Cell::new(why_none, Role::Muted), Cell::number);
         let cells = [Cell::from(one.joint.as_str()), Cell::number(one.normal), Cell::number(one.tangential), e];
         table.rows.push(Row::new(cells.into()));
     }

@@ -125,6 +125,20 @@ fn answers_end_before_the_proofs_begin() {
     assert!(edge.undecided.is_some() && edge.collapse.is_some_and(|run| run.is_proved()));
 }
 
+/// A load of zeros has no limit, however far it is looked for.
+#[test]
+fn a_load_that_does_not_act_has_no_limit() {
+    let case: Value = json!({ "parameters": { "F": 1.0 }, "contact_system": {
+        "pairs": ["c1"], "tangents": 2, "stiffness": vec![vec![0.0; 3]; 3], "friction": [0.2],
+        "loads": { "weight": { "vector": [1, 0, 0] }, "idle": { "factor": "F", "vector": [0, 0, 0] } } } });
+    let case = Case::json(case);
+    let values = case.scenario.parameter_values();
+    for name in ["idle", "F"] {
+        let error = limit(case.prepared.case(&case.scenario, &values), None, name).expect_err("no limit");
+        assert_eq!(error.brief(), "acts on no contact pair", "{error}");
+    }
+}
+
 /// Below its limit a load has an answer that passed its check on the cone, beyond it a collapse that is certified.
 fn sharp(case: &Case, limit: f64, what: &str) {
     let at = |share: f64| -> Answer { case.solve(&[("P", share * limit)]) };

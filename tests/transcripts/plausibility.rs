@@ -295,6 +295,11 @@ fn pairs_that_no_case_presses() {
     // A bearing the wrong way round on a level beam: its weight opens it.
     let turned = with(beam(), &[("/contacts/1/normal", json!([0, -1]))]);
     only(&turned, "contacts[1]", &["no load case presses `b`", "`weight` pulls it open", "(0, -1) points down"]);
+    assert!(warnings(&turned)[0].help.starts_with("turn its normal round"));
+    // Where another bearing stands off, what closes that gap may press it: its normal is not to be turned for that.
+    let off = with(turned, &[("/contacts/0/gap", json!(0.01))]);
+    let help = &warnings(&off)[0].help;
+    assert!(help.contains("after gaps close") && !help.contains("turn"), "{help}");
     // Only pulled along: nothing reaches the bearings.
     let pulled = with(
         beam(),

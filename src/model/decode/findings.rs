@@ -23,8 +23,12 @@ pub struct Findings {
 
 impl Findings {
     pub(super) fn add(&self, offset: usize, message: String, help: String) {
-        self.total.set(self.total.get() + 1);
         let mut kept = self.kept.borrow_mut();
+        // what is read twice is told once
+        if kept.iter().any(|finding| finding.offset == offset && finding.message == message) {
+            return;
+        }
+        self.total.set(self.total.get() + 1);
         if kept.len() < KEPT {
             kept.push(Finding { offset, message, help });
         }

@@ -262,6 +262,16 @@ fn read_dimension(fields: &Fields<'_>) {
         cursor.problem("`dimension` is that of a structure or of a contact system, and this is an lcp", "remove it");
         return;
     }
+    // What is meant is clear: nothing that follows from the quotation marks is to be told as well.
+    if let Some(word) =
+        Some(cursor).filter(|at| at.is_string()).and_then(Cursor::string).filter(|word| ["2", "3"].contains(word))
+    {
+        cursor.problem(format!("expected a number, found \"{word}\""), format!("write {word}, a number"));
+        if word == "3" {
+            cursor.reading.dimension.set(Dimension::Space);
+        }
+        return;
+    }
     match cursor.whole("dimension", 2) {
         Some(2) => {}
         Some(3) => cursor.reading.dimension.set(Dimension::Space),

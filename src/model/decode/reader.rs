@@ -118,6 +118,11 @@ impl<'d> Cursor<'d> {
         self.value.get(key).is_some()
     }
 
+    /// The string under this key of an object, if there is one.
+    pub fn string_under(self, key: &str) -> Option<&'d str> {
+        self.value.get(key)?.as_str()
+    }
+
     /// The parameters of the scenario.
     pub fn parameters(self) -> &'d Parameters {
         self.reading.parameters.get_or_init(Parameters::default)

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::builder::Builder;
+use super::builder::{Builder, entries};
 use super::reader::{Cursor, Fields};
 use super::{contacts, edges, elements, foundations, loads, rigid, springs, superelement, supports, ties};
 use crate::model::scenario::Places;
@@ -148,7 +148,12 @@ fn report_loose_nodes(builder: &Builder<'_>, fields: &Fields<'_>) {
         && structure.springs.is_empty()
         && structure.rigid.is_empty()
     {
-        let message = "the structure has no elements: expected bars, plates, meshes, quads, rigid bodies or springs";
+        let message = match structure.dimension {
+            Dimension::Plane => {
+                "the structure has no elements: expected bars, plates, meshes, quads, rigid bodies or springs"
+            }
+            Dimension::Space => "the structure has no elements: expected bars, bricks, meshes, rigid bodies or springs",
+        };
         fields.cursor().problem(message, "add what carries the load");
         return;
     }
@@ -159,6 +164,13 @@ fn report_loose_nodes(builder: &Builder<'_>, fields: &Fields<'_>) {
     let ties = structure.ties.iter().flat_map(|tie| &tie.nodes);
     let supports = structure.supports.iter().map(|support| &support.node);
     let springs = structure.springs.iter().flat_map(|spring| spring.terms.iter().map(|term| &term.node));
+    // A support that could not be read was told of already: its node is not without one.
+    let named = entries(fields, "supports").into_iter().filter_map(|support| support.string_under("at"));
+    named.filter_map(|id| builder.node_named(id)).for_each(|node| touched[node] = true);
+    let solid = match structure.dimension {
+        Dimension::Plane => "quad",
+        Dimension::Space => "brick",
+    };
     for &node in elements.chain(dofs).chain(rigid).chain(ties).chain(supports).chain(springs) {
         touched[node] = true;
     }
@@ -168,7 +180,7 @@ fn report_loose_nodes(builder: &Builder<'_>, fields: &Fields<'_>) {
         if !touched[node] {
             place.problem(
                 format!(
-                    "nothing is connected to the node \"{}\": no bar, quad, rigid body, tie, spring or support",
+                    "nothing is connected to the node \"{}\": no bar, {solid}, rigid body, tie, spring or support",
                     builder.node_id(node)
                 ),
                 "connect it or remove it",

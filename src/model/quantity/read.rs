@@ -173,7 +173,14 @@ fn lies_there(entry: &Word, names: &Names<'_>) -> Result<(), QuantityError> {
         Dimension::Space => (Dimension::Plane, Dimension::Space),
     };
     let (other, here) = (other.in_which(), here.in_which());
-    error(format!("`{}` is a quantity of {other}, and this {what} lies in {here}", entry.word))
+    let instead = match (entry.word, names.dimension) {
+        ("M", Dimension::Space) => ": it has `My` and `Mz`",
+        ("Q", Dimension::Space) => ": it has `Vy` and `Vz`",
+        ("Mz", Dimension::Plane) => ": it has `M`",
+        ("Vy", Dimension::Plane) => ": it has `Q`",
+        _ => "",
+    };
+    error(format!("`{}` is a quantity of {other}, and this {what} lies in {here}{instead}", entry.word))
 }
 
 /// Refuses what is neither a node nor one of the `others`.

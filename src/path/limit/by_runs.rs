@@ -15,6 +15,10 @@ const MOST: f64 = 1e9;
 /// The limit of a load case or load parameter, outwards from its present value, or from 0 where there is no answer.
 pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathError> {
     let (parameter, grown) = LoadParameter::find(case, name)?;
+    let grown_or_own = grown.as_deref().unwrap_or(case.prepared);
+    if grown_or_own.system().is_some_and(|system| parameter.direction(system).amax() == 0.0) {
+        return Err(PathError::Idle(parameter.name));
+    }
     let there = |value: f64| beside(&parameter, grown.is_some(), case, value);
     let run = |value: f64| -> Result<Run, PathError> {
         case.watch.progress(&format!("{name} = {value}"), 0.0);

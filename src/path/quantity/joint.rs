@@ -21,6 +21,9 @@ pub struct Resultant {
     /// Distance of N from the middle, > 0 towards later nodes; `None` where N = 0, and in space.
     #[serde(rename = "e")]
     pub eccentricity: Option<f64>,
+    /// Whether it is one of a face, along which there is no single direction to measure e in.
+    #[serde(skip)]
+    pub over_face: bool,
 }
 
 /// Friction of a pair in space: in global axes, or along t1 and t2 where those are not known.
@@ -42,7 +45,7 @@ impl Facts<'_> {
             ResultantPart::Tangential => Ok(found.tangential),
             ResultantPart::Eccentricity => {
                 let why = match self.pairs.iter().any(|pair| pair.space.is_some()) {
-                    true => "no eccentricity over a face: it has no first and last node",
+                    true => "no eccentricity over a face: e is measured along the nodes of an edge",
                     false => "no eccentricity where N = 0",
                 };
                 found.eccentricity.ok_or_else(|| NoValue(why.to_owned()))
@@ -58,14 +61,26 @@ impl Facts<'_> {
         if pairs.iter().any(|pair| pair.space.is_some()) {
             let friction: Vec<[f64; 3]> = pairs.iter().map(|pair| friction(pair)).collect();
             let tangential = length([0, 1, 2].map(|c| balance(friction.iter().map(|force| force[c]))));
-            return Some(Resultant { joint: joint.to_owned(), normal, tangential, eccentricity: None });
+            return Some(Resultant {
+                joint: joint.to_owned(),
+                normal,
+                tangential,
+                eccentricity: None,
+                over_face: true,
+            });
         }
         let tangential = balance(pairs.iter().map(|pair| pair.x_t));
         let places = self.places(joint, &pairs);
         let moments: Option<Vec<f64>> = pairs.iter().zip(&places).map(|(pair, s)| Some(pair.x_n * (*s)?)).collect();
         let moment = moments.map(|moments| balance(moments.into_iter()));
         let eccentricity = moment.map(|moment| moment / normal).filter(|e| normal != 0.0 && e.is_finite());
-        (!pairs.is_empty()).then(|| Resultant { joint: joint.to_owned(), normal, tangential, eccentricity })
+        (!pairs.is_empty()).then(|| Resultant {
+            joint: joint.to_owned(),
+            normal,
+            tangential,
+            eccentricity,
+            over_face: false,
+        })
     }
 
     /// Places of pairs of a joint along it, from its middle: along the nodes of its edge, or by the positions of a given
