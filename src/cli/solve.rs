@@ -9,7 +9,7 @@ use super::input::Form;
 use super::settings::Settings;
 use crate::export::json as json_export;
 use crate::model::embedded;
-use crate::session::{Answer, History, Session, exit_status};
+use crate::session::{Answer, History, HistoryEnd, Session, exit_status};
 use crate::signals::{Signals, TerminalWatch};
 use crate::view;
 use crate::view::style::{Role, Style};
@@ -68,13 +68,16 @@ fn write_history(
 ) -> Result<u8, Failure> {
     let scenario = session.scenario();
     let nothing = || Failure::Status(4, "no answer".to_owned());
-    let answer = history.answer().ok_or_else(nothing)?;
+    let answer = &*history.outcome().ok_or_else(nothing)?;
     if arguments.format == Form::Json {
         let result = session.result(arguments.timings).ok_or_else(nothing)?;
         writeln!(out, "{}", json_export::pretty(&result)?)?;
     } else {
-        let note = "the load history was followed, this is its end (`--at-once`: all load cases at once)";
-        style.paragraph(out, Role::Muted, note)?;
+        let note = match history.end {
+            HistoryEnd::Broken(_) => "the load history broke down; this is the end of the last stage before",
+            HistoryEnd::Complete | HistoryEnd::Limit { .. } => "the load history was followed, this is its end",
+        };
+        style.paragraph(out, Role::Muted, &format!("{note} (`--at-once`: all load cases at once)"))?;
         if arguments.settings.has_rules() {
             let note = "the covering, the tie-break and the engine chosen do not reach its rate problems: they are solved \
                         under the default rules";

@@ -7,9 +7,10 @@ use crate::model::parameter::ParameterValues;
 use crate::path::stages::{History, StageResult};
 
 /// The result of a history. Its top-level keys describe the end of the last stage followed; `attempts` and `pivots` are
-/// those of the last rate problem. `None` for a history without stages.
+/// those of the last rate problem. Where a stage broke down there is no answer, and the stages are those before it. `None`
+/// for a history without stages.
 pub fn result(history: &History, scenario_name: &str, parameters: &ParameterValues, timings: bool) -> Option<Value> {
-    let mut result = json::result(history.answer()?, scenario_name, parameters, timings);
+    let mut result = json::result(&*history.outcome()?, scenario_name, parameters, timings);
     if let Value::Object(map) = &mut result {
         let stages = history.stages.iter().map(|of| stage(of, &history.cases)).collect();
         map.insert("stages".to_owned(), Value::Array(stages));

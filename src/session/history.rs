@@ -91,6 +91,10 @@ impl Session {
             HistoryEnd::Limit { stage, t, .. } => {
                 format!("where the load history ended, at {} of stage {}", short(*t), stage + 1)
             }
+            HistoryEnd::Broken(_) => {
+                let last = history.stages.len();
+                format!("at the end of stage {last} of the load history, which broke down in stage {}", last + 1)
+            }
         })
     }
 

@@ -38,7 +38,7 @@ use crate::model::plausible;
 use crate::model::problem::Problem;
 use crate::model::scenario::Scenario;
 use crate::path::record::PathRecord;
-pub use crate::path::stages::History;
+pub use crate::path::stages::{History, HistoryEnd};
 use crate::solve::look::{Looked, look};
 pub use crate::solve::{Prepared, Solved};
 use crate::view::projection::Viewpoint;

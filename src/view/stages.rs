@@ -16,6 +16,7 @@ pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Styl
     let role = match history.end {
         HistoryEnd::Complete => Role::Muted,
         HistoryEnd::Limit { .. } => Role::Warning,
+        HistoryEnd::Broken(_) => Role::Bad,
     };
     style.paragraph(out, role, &history.end_sentence())?;
     if let Some(error) = history.stages.last().and_then(|stage| stage.estimated_error) {

@@ -201,3 +201,48 @@ fn a_path_tells_the_values_it_was_followed_under() {
     // 6 f F = 300 was the limit then, 180 is it now
     assert!(!std::fs::read_to_string(&report).unwrap().contains("= 300"));
 }
+
+/// A block of weight 8 that is pushed by up to 4: it slides off at f G = 2.4, at 0.6 of the second stage. That stage has no
+/// end; what the tables and the result show is of the place where it was left.
+#[test]
+fn a_stage_that_ends_in_a_limit_has_no_end() {
+    let folder = tempfile::tempdir().expect("a place");
+    let block = r#"{"format": "stickslip/1", "title": "block", "materials": {"m": {"E": 3e4, "nu": 0.2}},
+     "plates": [{"id": "a", "origin": [0, 0], "size": [4, 1], "divisions": [4, 2], "thickness": 1, "material": "m", "plane": "stress"}],
+     "contacts": [{"id": "bed", "edge": "a.bottom", "against": "ground", "friction": 0.3}],
+     "loads": {"weight": {"items": [{"traction": {"edge": "a.top", "value": [0, -2]}}]},
+               "push": {"items": [{"traction": {"edge": "a.top", "value": [1, 0]}}]}},
+     "stages": [{"weight": 1}, {"weight": 1, "push": 1}]}"#;
+    let file = folder.path().join("block.json");
+    std::fs::write(&file, block).expect("written");
+    let out = |name: &str| folder.path().join(name).display().to_string();
+    let results = run(
+        "beam",
+        &[
+            &format!("load {}", file.display()),
+            "stages",
+            "expect stage 1 resultant bed N = 8 +- 1e-9",
+            "expect stage 2 outcome ray",
+            "show stage 2 resultant bed T",
+            "expect resultant bed T = -2.4 +- 1e-9",
+            &format!("export stresses {}", out("stresses.csv")),
+            &format!("export resultants {}", out("resultants.json")),
+        ],
+    );
+    let refused = text(&results[4]).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        refused.contains("`stage 2` is its end, which was not reached: stage 2 cannot be completed: at 0.6"),
+        "{refused}"
+    );
+    for index in [1, 2, 3, 5, 6, 7] {
+        text(&results[index]);
+    }
+    let session =
+        Session::new(stickslip::model::load::load_file(&file).unwrap_or_else(|error| panic!("{error}")), &Quiet);
+    let mut session = session.expect("sound");
+    session.follow_stages(&Quiet).expect("a history");
+    let result = session.result(false).expect("a result");
+    for stage in result["stages"].as_array().expect("stages") {
+        assert!(stage["stresses"].is_array() && stage["resultants"].is_array(), "{stage}");
+    }
+}

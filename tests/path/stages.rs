@@ -3,6 +3,7 @@
 use stickslip::model::load::load_text;
 use stickslip::model::scenario::Scenario;
 use stickslip::path::stages::{History, HistoryEnd, follow};
+use stickslip::path::start::PathError;
 use stickslip::solve::{Prepared, prepare};
 use stickslip::watch::Quiet;
 
@@ -236,4 +237,23 @@ fn a_block_that_slides_away_jumps_to_its_stop() {
         close(stop.x_n - floor.x_t, push - taken, push);
         close(stage.energy.expect("a structure").residual, 0.0, 1.0);
     }
+}
+
+/// A history that broke down in its third stage: the two before it stand, and all of it is no answer.
+#[test]
+fn what_was_followed_before_a_breakdown_stands() {
+    let stages = r#"[{"weight": 1}, {"weight": 1, "pull": 1}]"#;
+    let (scenario, _, whole) = run("beam", stages, &[("F", 100.0), ("f", 0.3), ("F2", 150.0)]);
+    let error = PathError::Breakdown { name: "the place in stage 3".to_owned(), at: 0.5, why: "why".to_owned() };
+    let broken = History { end: HistoryEnd::Broken(Box::new(error.clone())), ..whole.clone() };
+    assert_eq!([0, 1, 2].map(|stage| broken.has_end_of(stage)), [true, true, false]);
+    assert_eq!((whole.clone().unbroken(), broken.clone().unbroken()), (Ok(whole.clone()), Err(error.clone())));
+    let told = |history: &History| {
+        let result =
+            stickslip::export::history::result(history, "beam", &scenario.parameter_values(), false).expect("stages");
+        (result["outcome"].clone(), result["failure"].clone(), result["stages"].as_array().map(Vec::len))
+    };
+    assert_eq!(told(&whole), ("normal".into(), serde_json::Value::Null, Some(2)));
+    assert_eq!(told(&broken), ("breakdown".into(), error.to_string().into(), Some(2)));
+    assert_eq!(broken.outcome().map(|answer| answer.pairs.clone()), whole.answer().map(|answer| answer.pairs.clone()));
 }

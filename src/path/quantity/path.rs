@@ -55,6 +55,10 @@ impl<'a> Facts<'a> {
         let Some(found) = history.stages.get(stage - 1) else {
             return none(format!("stage {stage} was not reached: {}", history.end_sentence()));
         };
+        let is_of_end = !matches!(inner, Quantity::Answer(OfAnswer::Outcome));
+        if is_of_end && !history.has_end_of(stage - 1) {
+            return none(format!("`stage {stage}` is its end, which was not reached: {}", history.end_sentence()));
+        }
         match inner {
             Quantity::Answer(OfAnswer::Dissipated) => Value::finite(found.dissipated),
             inner => self.at_stage(history, stage - 1).value(inner),

@@ -141,7 +141,13 @@ pub(super) trait Follower<'a> {
             let Place { factors, gaps, .. } = self.place();
             let course = Course { factors: [factors.clone(), target.clone()], gaps: [gaps.clone(), gaps.clone()] };
             let before = self.states();
-            let (way, limit) = self.along(&course, &report).map_err(|error| in_stage(error, index))?;
+            let (way, limit) = match self.along(&course, &report).map_err(|error| in_stage(error, index)) {
+                // What was followed before it stands.
+                Err(error @ PathError::Breakdown { .. }) if index > 0 => {
+                    return Ok((stages, HistoryEnd::Broken(Box::new(error))));
+                }
+                followed => followed?,
+            };
             stages.push(self.result(way, &before, limit.as_ref()));
             if let Some((t, collapse)) = limit {
                 return Ok((stages, HistoryEnd::Limit { stage: index, t, collapse: Box::new(collapse) }));

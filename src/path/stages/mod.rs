@@ -60,7 +60,7 @@ pub fn follow(case: Case<'_>) -> Result<History, PathError> {
             target
         })
         .collect();
-    follow_factors(case, &Begin::Unloaded, &targets)
+    followed(case, &Begin::Unloaded, &targets, &mut |_| false)
 }
 
 /// Where a history begins.
@@ -86,6 +86,16 @@ pub fn follow_factors(case: Case<'_>, begin: &Begin, targets: &[Vec<f64>]) -> Re
 /// # Errors
 /// As [`follow_factors`].
 pub(super) fn follow_until(
+    case: Case<'_>,
+    begin: &Begin,
+    targets: &[Vec<f64>],
+    enough: &mut dyn FnMut(&[StageResult]) -> bool,
+) -> Result<History, PathError> {
+    followed(case, begin, targets, enough)?.unbroken()
+}
+
+/// The same, up to a stage that breaks down.
+fn followed(
     case: Case<'_>,
     begin: &Begin,
     targets: &[Vec<f64>],

@@ -1,9 +1,12 @@
 //! A followed history as data.
 
+use std::borrow::Cow;
+
 use super::integrals::Integrals;
 use crate::answer::pairs::JointState;
-use crate::answer::record::{Answer, InSpace, PairState, Ray, State, Verdict};
+use crate::answer::record::{Answer, InSpace, OutcomeKind, PairState, Ray, State, Verdict};
 use crate::path::change::Change;
+use crate::path::start::PathError;
 
 /// The structure at one moment of the history.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,6 +98,8 @@ pub enum HistoryEnd {
         /// The collapse.
         collapse: Box<Ray>,
     },
+    /// The numbers no longer belonged together in the stage after the last one here.
+    Broken(Box<PathError>),
 }
 
 /// A followed history.
@@ -102,7 +107,7 @@ pub enum HistoryEnd {
 pub struct History {
     /// Names of the load cases.
     pub cases: Vec<String>,
-    /// The stages; the last one is incomplete where the history ended in it.
+    /// The stages; the last one is incomplete where the history ended in it. One that broke down is not among them.
     pub stages: Vec<StageResult>,
     /// How it ended.
     pub end: HistoryEnd,
@@ -114,6 +119,31 @@ impl History {
         self.stages.last().map(|stage| &stage.end)
     }
 
+    /// The same as the result of all of the history: no answer where a stage broke down.
+    pub fn outcome(&self) -> Option<Cow<'_, Answer>> {
+        let end = self.answer()?;
+        let HistoryEnd::Broken(error) = &self.end else { return Some(Cow::Borrowed(end)) };
+        let failure = Some(error.to_string());
+        Some(Cow::Owned(Answer { outcome: OutcomeKind::Breakdown, failure, ..end.clone() }))
+    }
+
+    /// Itself unless a stage broke down.
+    ///
+    /// # Errors
+    /// How it did.
+    pub fn unbroken(self) -> Result<History, PathError> {
+        match self.end {
+            HistoryEnd::Broken(error) => Err(*error),
+            _ => Ok(self),
+        }
+    }
+
+    /// Whether a stage, from 0, is here and was followed to its end.
+    pub fn has_end_of(&self, stage: usize) -> bool {
+        let cut = matches!(self.end, HistoryEnd::Limit { stage: last, .. } if last == stage);
+        stage < self.stages.len() && !cut
+    }
+
     /// How the history ended, in a sentence.
     pub fn end_sentence(&self) -> String {
         match &self.end {
@@ -121,6 +151,7 @@ impl History {
             HistoryEnd::Limit { stage, t, collapse } => {
                 format!("stage {} cannot be completed: at {t:.6} of it {}", stage + 1, limit_words(collapse))
             }
+            HistoryEnd::Broken(error) => error.to_string(),
         }
     }
 

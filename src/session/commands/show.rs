@@ -4,6 +4,7 @@ use clap::Args;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
+use crate::answer::record::Answer;
 use crate::export::{history as history_export, json as json_export};
 use crate::model::quantity::{self, Names, Quantity};
 use crate::model::units::Units;
@@ -151,27 +152,28 @@ impl Session {
             Some(history) => history_export::result(history, name, values, timings)?,
             None => json_export::result(self.answer()?, name, values, timings),
         };
-        let is_answer = self.quantity_answer().is_some_and(crate::answer::record::Answer::is_answer);
+        let has_displacements = |answer: &Answer| answer.displacements.is_some();
+        let is_whole = self.quantity_answer().is_some_and(has_displacements);
         self.with_facts(&Quiet, |facts| {
-            self.add_quantities(&mut result, facts, is_answer);
+            self.add_quantities(&mut result, facts, is_whole);
             let stages = result.get_mut("stages").and_then(Json::as_array_mut);
             let Some((history, stages)) = self.followed.as_ref().zip(stages) else { return };
             for (number, stage) in stages.iter_mut().enumerate() {
-                let is_answer = history.stages[number].end.is_answer();
-                self.add_quantities(stage, &facts.at_stage(history, number), is_answer);
+                let is_whole = has_displacements(&history.stages[number].end);
+                self.add_quantities(stage, &facts.at_stage(history, number), is_whole);
             }
         });
         Some(result)
     }
 
-    /// Adds the probes, resultants and stresses of a state to its result.
-    fn add_quantities(&self, result: &mut Json, facts: &Facts<'_>, is_answer: bool) {
+    /// Adds the probes, resultants and stresses of a state to its result; the latter where it has displacements.
+    fn add_quantities(&self, result: &mut Json, facts: &Facts<'_>, is_whole: bool) {
         let Json::Object(object) = result else { return };
         let probes = self.probe_values(facts);
         if !probes.is_empty() {
             object.insert("probes".into(), Json::Object(probes));
         }
-        if !is_answer {
+        if !is_whole {
             return;
         }
         let (resultants, stresses) = (self.resultants(facts), facts.stresses());

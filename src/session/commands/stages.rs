@@ -3,7 +3,8 @@
 use clap::Args;
 use serde_json::{Value, json};
 
-use crate::path::stages::History;
+use crate::path::stages::{History, HistoryEnd};
+use crate::path::start::PathError;
 use crate::session::language::command::{Action, Command};
 use crate::session::{CommandError, Next, Output, Session};
 use crate::view;
@@ -61,7 +62,11 @@ impl Session {
             let line = format!("quantities, `expect` and tables now stand {place}, until the next change or `solve`");
             style.paragraph(out, Role::Muted, &line)
         })?;
-        Ok(())
+        // The stages before it are kept: what is asked for next says where it stands.
+        match &history.end {
+            HistoryEnd::Broken(error) => Err(CommandError::from(PathError::clone(error))),
+            HistoryEnd::Complete | HistoryEnd::Limit { .. } => Ok(()),
+        }
     }
 }
 

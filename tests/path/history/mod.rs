@@ -133,6 +133,7 @@ fn try_histories(seeds: std::ops::Range<u64>, clamped: bool, steps: usize) -> Ta
         }
         match &history.end {
             HistoryEnd::Complete => tally.complete += 1,
+            HistoryEnd::Broken(error) => panic!("seed {seed}: {error}\n{text}"),
             HistoryEnd::Limit { stage, collapse, .. } => {
                 tally.limits += 1;
                 tally.certified += usize::from(collapse.verdict == Some(Verdict::Certified));

@@ -227,7 +227,7 @@ impl Session {
 
     fn stresses(&self, io: &Output<'_>) -> Result<Vec<Value>, CommandError> {
         let answer = self.need_quantities()?;
-        if !answer.is_answer() {
+        if answer.displacements.is_none() {
             return Err(self.none("stresses", answer));
         }
         let all = self.with_facts(io.watch, |facts| facts.stresses());
@@ -243,7 +243,7 @@ impl Session {
 
     fn resultants_json(&self, io: &Output<'_>) -> Result<Value, CommandError> {
         let answer = self.need_quantities()?;
-        if !answer.is_answer() {
+        if answer.displacements.is_none() {
             return Err(self.none("resultants", answer));
         }
         let all = self.with_facts(io.watch, |facts| self.resultants(facts));
