@@ -228,23 +228,6 @@ pub fn dot(a: &[Doubled], b: &[Doubled]) -> Doubled {
     run(Dot(a, b))
 }
 
-/// target := factor · target + x.
-pub fn scale_and_add(target: &mut [Doubled], factor: Doubled, x: &[Doubled]) {
-    struct Scale<'a>(&'a mut [Doubled], Doubled, &'a [Doubled]);
-    impl Work for Scale<'_> {
-        type Output = ();
-
-        #[inline(always)]
-        fn run<const FUSED: bool>(self) {
-            let Scale(target, factor, x) = self;
-            for (target, x) in std::iter::zip(target, x) {
-                *target = *x + factor.times::<FUSED>(*target);
-            }
-        }
-    }
-    run(Scale(target, factor, x));
-}
-
 /// target += factor · x.
 pub fn add_multiple(target: &mut [Doubled], factor: Doubled, x: &[Doubled]) {
     struct Multiple<'a>(&'a mut [Doubled], Doubled, &'a [Doubled]);

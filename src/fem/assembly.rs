@@ -9,15 +9,12 @@ use super::element::{Number, Stiffness, check_spring, slots, spring, stiffness};
 use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::sparse::SymmetricSparse;
-use super::threads::map_all;
+use super::threads::each_element;
 use crate::doubled::Real;
 use crate::model::structure::{Spring, Structure};
 
 /// Elements that are assembled between two looks at the watcher.
 const ELEMENTS_PER_LOOK: usize = 4096;
-
-/// Elements whose stiffness is worth a thread.
-const WORTH_A_THREAD: usize = 64;
 
 /// K on the base dofs, with neither supports nor ties nor joints. Elements inside a rigid body are left out: nothing
 /// strains them, and the rounding of their stiffness could hide what the body stands on.
@@ -80,20 +77,21 @@ pub fn assemble_seen<T: Number>(
         },
         |push| {
             (0..dofs.count()).for_each(|dof| push(dof, dof, T::zero()));
-            let indices: Vec<usize> = elements().collect();
-            for indices in indices.chunks(ELEMENTS_PER_LOOK) {
-                if stop() {
-                    return Err(MainSystemError::Interrupted);
-                }
-                let stiffnesses = map_all(indices.to_vec(), WORTH_A_THREAD, |index| stiffness(structure, index));
-                for (&index, k) in std::iter::zip(indices, stiffnesses) {
+            each_element(
+                elements(),
+                |index| stiffness(structure, index),
+                |index, k| {
+                    if index % ELEMENTS_PER_LOOK == 0 && stop() {
+                        return Err(MainSystemError::Interrupted);
+                    }
                     let k = k?;
                     see(&k);
                     element_dofs(index, &mut |at| {
                         lower(at, &mut |row, column, i, j| push(row, column, k[(i, j)]));
                     });
-                }
-            }
+                    Ok(())
+                },
+            )?;
             for element in &structure.springs {
                 check_spring(structure, element)?;
                 lower(&spring_dofs(element), &mut |row, column, i, j| {

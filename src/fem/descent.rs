@@ -3,7 +3,7 @@
 //! Flexible ones (Golub, Ye 1999): the preconditioner, rounded, is not quite symmetric.
 
 use num_traits::Zero;
-use stickslip_numerics::doubled::{add_multiple, dot, scale_and_add};
+use stickslip_numerics::doubled::{add_multiple, dot};
 
 use crate::doubled::Doubled;
 
@@ -87,9 +87,9 @@ impl Descent {
     }
 
     /// Into the next direction, with the z of what is left after the step.
-    pub fn turn(&mut self, z: &[Doubled]) {
+    pub fn turn(&mut self, mut z: Vec<Doubled>) {
         // Rounding may turn the sign of what is next to nothing.
-        self.now = dot(&self.residual, z).to_f64().abs();
+        self.now = dot(&self.residual, &z).to_f64().abs();
         self.idle += 1;
         if self.now < self.best.0 {
             self.best.0 = self.now;
@@ -97,8 +97,9 @@ impl Descent {
             self.idle = 0;
         }
         // It is conjugate to the last one, whatever the preconditioner did.
-        let turn = Doubled::from(-dot(z, &self.response).to_f64() / self.stiffness);
-        scale_and_add(&mut self.direction, turn, z);
+        let turn = Doubled::from(-dot(&z, &self.response).to_f64() / self.stiffness);
+        add_multiple(&mut z, turn, &self.direction);
+        self.direction = z;
     }
 
     /// The solution; `None` if it did not converge.

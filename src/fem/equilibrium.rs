@@ -14,7 +14,7 @@ use super::displacements::Displacements;
 use super::element::{slots, spring, stiffness};
 use super::main_system::MainSystem;
 use super::recovery::own_displacements;
-use super::threads::map_all;
+use super::threads::each_element;
 use crate::doubled::Real;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
@@ -31,10 +31,6 @@ const DOUBLED_ROW: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
 
 /// The same of a row of R z with z from an LCP (method §4, "Zero").
 const JOINT_ROW: f64 = 64.0 * f64::EPSILON;
-
-/// Elements whose forces are kept until they are summed, and how many are worth a thread.
-const ELEMENTS: usize = 4096;
-const WORTH_A_THREAD: usize = 64;
 
 /// States that share each look at K.
 const TOGETHER: usize = 8;
@@ -244,13 +240,12 @@ impl MainSystem {
     ) -> Vec<f64> {
         let mut sums = vec![0.0; self.dofs.count()];
         let rigid = structure.rigid_elements();
-        let elements: Vec<usize> = (0..structure.elements.len()).filter(|&index| !rigid[index]).collect();
-        for elements in elements.chunks(ELEMENTS) {
-            let forces = map_all(elements.to_vec(), WORTH_A_THREAD, |index| element_forces(structure, index, u));
-            for (&index, forces) in std::iter::zip(elements, forces) {
-                self.add_element(structure, index, &forces, &mut sums);
-            }
-        }
+        let elements = (0..structure.elements.len()).filter(|&index| !rigid[index]);
+        let forces = |index| element_forces(structure, index, u);
+        let Ok(()) = each_element(elements, forces, |index, forces| {
+            self.add_element(structure, index, &forces, &mut sums);
+            Ok::<(), std::convert::Infallible>(())
+        });
         self.add_superelement(structure, u, &mut sums);
         for spring in &structure.springs {
             // Along a unit vector: its force is the length of its components.

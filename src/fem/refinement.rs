@@ -107,7 +107,7 @@ impl Refinement<'_> {
                 descent.step(self.forces_on_masters(&self.expand(descent.direction())));
             }
             let z = self.precondition(going.iter().map(|descent| descent.residual()));
-            std::iter::zip(going, z).for_each(|(descent, z)| descent.turn(&z));
+            std::iter::zip(going, z).for_each(|(descent, z)| descent.turn(z));
         }
         Ok(all.into_iter().map(Descent::solution).collect())
     }

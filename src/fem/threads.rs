@@ -40,6 +40,28 @@ pub fn map_all<I: Send, T: Send>(items: Vec<I>, worth: usize, work: impl Fn(I) -
     }
 }
 
+/// Elements of which something is kept at once, and how many are worth a thread.
+const AT_ONCE: usize = 4096;
+const OF_A_THREAD: usize = 64;
+
+/// What `of` makes of each element, on all threads, to `take` in their order, up to its first error.
+///
+/// # Errors
+/// Those of `take`.
+pub fn each_element<T: Send, E>(
+    elements: impl Iterator<Item = usize>,
+    of: impl Fn(usize) -> T + Sync + Send,
+    mut take: impl FnMut(usize, T) -> Result<(), E>,
+) -> Result<(), E> {
+    let elements: Vec<usize> = elements.collect();
+    for some in elements.chunks(AT_ONCE) {
+        for (&index, made) in some.iter().zip(map_all(some.to_vec(), OF_A_THREAD, &of)) {
+            take(index, made)?;
+        }
+    }
+    Ok(())
+}
+
 /// Whether work on so many unknowns is worth threads, and there are some.
 pub fn can_spread_over(unknowns: usize) -> bool {
     unknowns >= LARGE && can_spread()

@@ -9,6 +9,8 @@ mod twins;
 mod units;
 mod unused;
 
+use std::ops::Range;
+
 use super::locate::Document;
 use super::problem::Problem;
 use super::scenario::{Scenario, Source};
@@ -59,6 +61,16 @@ pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
         warnings.extend(loads::of_contact_system(scenario, system));
     }
     warnings
+}
+
+/// The pairs of each contact of the file.
+fn contacts(scenario: &Scenario) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut from = 0;
+    scenario.places.pairs.chunk_by(|a, b| a == b).map(move |own| {
+        let range = from..from + own.len();
+        from = range.end;
+        range
+    })
 }
 
 /// What is said as soon as a scenario is loaded: odd enough to change every answer.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::Warning;
+use super::{Warning, contacts};
 use crate::model::pair::Pair;
 use crate::model::scenario::Scenario;
 use crate::model::structure::Structure;
@@ -16,10 +16,7 @@ pub fn of_contacts(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
     let (pairs, places) = (&structure.pairs, &scenario.places.pairs);
     let mut seen: HashMap<Vec<usize>, Vec<usize>> = HashMap::new();
     let mut warnings = Vec::new();
-    let mut from = 0;
-    while from < pairs.len().min(places.len()) {
-        let len = places[from..].iter().take_while(|place| **place == places[from]).count();
-        let own = from..from + len;
+    for own in contacts(scenario) {
         let firsts: Option<Vec<usize>> = own
             .clone()
             .map(|i| {
@@ -32,18 +29,17 @@ pub fn of_contacts(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
                 firsts.into_iter().map(|first| format!("`{}`", pairs[first].contact())).collect();
             ids.dedup();
             warnings.push(Warning::new(
-                places[from].to_string(),
+                places[own.start].to_string(),
                 format!(
                     "`{}` has the nodes and the normal of {}: both press at the same place, and nothing says how they \
                      share the force",
-                    pairs[from].contact(),
+                    pairs[own.start].contact(),
                     ids.join(", ")
                 ),
                 "keep one of them; the two sides of a guide have opposite normals",
             ));
         }
         own.for_each(|i| seen.entry(nodes(&pairs[i])).or_default().push(i));
-        from += len;
     }
     warnings
 }
