@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use crate::lcp::problem::Lcp;
 use crate::model::scenario::FORMAT;
+use crate::model::units::Units;
 
 /// A variable's name as an id of the format: `x+[joint[0]]` becomes `x_plus_joint_0`, `1` becomes `w_1`.
 fn id(name: &str) -> String {
@@ -17,13 +18,14 @@ fn id(name: &str) -> String {
 }
 
 /// The LCP as a `stickslip/1` scenario with the source `lcp`: it loads and solves as it is.
-pub fn scenario(lcp: &Lcp<f64>, names: &[String], title: &str) -> Value {
+pub fn scenario(lcp: &Lcp<f64>, names: &[String], title: &str, units: &Units) -> Value {
     let names: Vec<String> = names.iter().map(|name| id(name)).collect();
-    json!({
-        "format": FORMAT,
-        "title": title,
-        "lcp": { "M": lcp.matrix, "q": lcp.q, "covering": lcp.covering, "names": names },
-    })
+    let mut value = json!({"format": FORMAT, "title": title});
+    if let Some(units) = units.json() {
+        value["units"] = units;
+    }
+    value["lcp"] = json!({ "M": lcp.matrix, "q": lcp.q, "covering": lcp.covering, "names": names });
+    value
 }
 
 /// A bare LCP as the text of a scenario, a row of M a line.
@@ -75,7 +77,7 @@ mod tests {
         let matrix = vec![vec![2.0, 1.0 / 3.0], vec![-1e-17, 1.5]];
         let lcp = Lcp { scale: Scale::plain(&matrix), matrix, q: vec![-1.0, 0.1], covering: vec![1.0, 1.7] };
         let names = ["x_n[c1]", "x-[joint[0]]"].map(str::to_owned);
-        let text = scenario(&lcp, &names, "two rows").to_string();
+        let text = scenario(&lcp, &names, "two rows", &Units::default()).to_string();
         let loaded = load_text("two", &text, None).expect("a scenario");
         let Source::Lcp(given) = loaded.source else { panic!("an lcp") };
         assert_eq!(given.matrix, lcp.matrix);

@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::contact::law::PairLaw;
 use crate::lcp::exact::dyadic::rational;
 use crate::model::scenario::FORMAT;
+use crate::model::units::Units;
 use crate::solve::prove::forms::Forms;
 use crate::solve::prove::system::{ProvedContact, ProvedSystem};
 use crate::solve::prove::tree::{Sum, Tree};
@@ -14,14 +15,19 @@ use crate::solve::prove::{Claim, Proof};
 use crate::text::hash::Hash;
 
 /// The system as a `stickslip/1` scenario: it loads and solves as it is.
-pub fn system(system: &ProvedSystem, title: &str) -> Value {
+pub fn system(system: &ProvedSystem, title: &str, units: &Units) -> Value {
     let (key, source) = match system {
         ProvedSystem::Contact(contact) => ("contact_system", of_contact(contact)),
         ProvedSystem::Plain { matrix, q, names } => {
             ("lcp", json!({"names": names, "M": rows(matrix), "q": q.as_slice()}))
         }
     };
-    json!({"format": FORMAT, "title": title, key: source})
+    let mut value = json!({"format": FORMAT, "title": title});
+    if let Some(units) = units.json() {
+        value["units"] = units;
+    }
+    value[key] = source;
+    value
 }
 
 fn rows(matrix: &DMatrix<f64>) -> Value {

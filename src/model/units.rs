@@ -8,3 +8,13 @@ pub struct Units {
     /// Unit of force, e.g. `kN`.
     pub force: Option<String>,
 }
+
+impl Units {
+    /// As a scenario has them; `None` without any.
+    pub fn json(&self) -> Option<serde_json::Value> {
+        let both = [("length", &self.length), ("force", &self.force)];
+        let given = both.into_iter().filter_map(|(key, label)| Some((key.to_owned(), label.clone()?.into())));
+        let given: serde_json::Map<String, serde_json::Value> = given.collect();
+        (!given.is_empty()).then(|| given.into())
+    }
+}

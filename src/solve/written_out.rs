@@ -68,7 +68,7 @@ mod tests {
             let values = loaded.parameter_values();
             let prepared = prepare(&loaded, &Quiet).expect("prepared");
             let (lcp, names) = prepared.written_lcp(&values, loaded.rules);
-            let text = scenario(&lcp, &names, name).to_string();
+            let text = scenario(&lcp, &names, name, &crate::model::units::Units::default()).to_string();
             let exported = load_text("exported", &text, None).expect("a scenario");
             let again = prepare(&exported, &Quiet).expect("prepared");
             let solved = again.case(&exported, &exported.parameter_values()).solve().expect("solved");

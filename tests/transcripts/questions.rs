@@ -150,3 +150,104 @@ fn comparisons_need_no_blanks() {
     assert!((found["groups"][0]["value"].as_f64().expect("a number") - 0.5).abs() < 1e-6, "{found}");
     assert!(refused(&mut beam, "expect collapse<0.1").contains("nothing was sampled yet"));
 }
+
+/// The table of a quantity along a path: where n of the beam's pairs have reached their bound r = 50, c6 has slipped by
+/// (L/EA) r n (n − 1)/2, L/EA = 1e-5.
+#[test]
+fn quantities_along_a_path_go_to_a_table() {
+    let folder = tempfile::tempdir().expect("a place");
+    let mut session = super::lines::embedded("beam");
+    text(&mut session, "set F2 0");
+    text(&mut session, "trace F2 to 260");
+    let file = folder.path().join("p.csv");
+    text(&mut session, &format!("export path z_t c6, max u {}", file.display()));
+    let written = std::fs::read_to_string(&file).expect("written");
+    let mut rows = written.lines().map(|row| row.split(',').collect::<Vec<_>>());
+    let head = rows.next().expect("a head");
+    let column = |name: &str| head.iter().position(|column| *column == name).expect("a column");
+    let (value, slip, change) = (column("value"), column("z_t c6"), column("change"));
+    assert!(column("max u") > slip && change > slip);
+    let mut turns = 0;
+    for row in rows {
+        let number = |at: usize| row[at].parse::<f64>().expect("a number");
+        let n = number(value) / 50.0;
+        if (n - n.round()).abs() < 1e-9 {
+            let n = n.round();
+            assert!((number(slip) - 1e-5 * 50.0 * n * (n - 1.0) / 2.0).abs() < 1e-12, "{row:?}");
+            turns += 1;
+        }
+    }
+    assert!(turns >= 5, "{written}");
+    let json = file.with_extension("json");
+    text(&mut session, &format!("export path z_t c6 {}", json.display()));
+    let rows: serde_json::Value = serde_json::from_slice(&std::fs::read(&json).expect("written")).expect("JSON");
+    assert!(rows.as_array().is_some_and(|rows| rows.len() > 5 && rows.iter().all(|row| row["z_t c6"].is_number())));
+    let mut pipe = super::lines::embedded("pipeline");
+    text(&mut pipe, "stages");
+    text(&mut pipe, &format!("export path fx noz {}", file.display()));
+    let written = std::fs::read_to_string(&file).expect("written");
+    assert!(written.starts_with("stage,value,factor ") && written.lines().count() > 2, "{written}");
+    assert!(refused(&mut pipe, &format!("export path force {}", file.display())).contains("takes quantities"));
+}
+
+/// Draws follow the load history of each point: in stage 1 B goes down by P L³/(3 E I) = 64 P/600.
+#[test]
+fn samples_follow_the_stages() {
+    let staged =
+        TWO.replace(r#""probes""#, r#""stages": [ { "weight": 1, "tip": 1 }, { "weight": 1, "tip": 0.5 } ], "probes""#);
+    let mut session = read(&staged);
+    let folder = tempfile::tempdir().expect("a place");
+    let file = folder.path().join("draws.csv");
+    text(
+        &mut session,
+        &format!("sample P=uniform(1,2) 8 of stage 1 uy B, stage 2 uy B --crude --out {}", file.display()),
+    );
+    let written = std::fs::read_to_string(&file).expect("written");
+    let rows: Vec<Vec<&str>> = written.lines().skip(1).map(|row| row.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|column| *column == name).expect("a column");
+    let (first, second) = (column("stage 1 uy B"), column("stage 2 uy B"));
+    assert_eq!(rows.len(), 9);
+    for row in &rows[1..] {
+        let number = |at: usize| row[at].parse::<f64>().expect("a number");
+        let p = number(0);
+        assert!((number(first) + 64.0 * p / 600.0).abs() < 1e-9, "{row:?}");
+        assert!((number(second) + 32.0 * p / 600.0).abs() < 1e-9, "{row:?}");
+    }
+    let sampled = report(&mut session, "sample P=uniform(1,2) 8 of stage 1 uy B").expect("a sample");
+    let spread = &sampled["quantities"][0];
+    assert_eq!(spread["known"].as_f64(), Some(1.0), "{sampled}");
+    assert!(spread["most"].as_f64().is_some_and(|most| most <= -64.0 / 600.0 + 1e-9), "{sampled}");
+    for line in ["map P 1..2 H 0..1 of stage 1 uy B", "trace push to 2 of stage 1 uy B"] {
+        assert!(refused(&mut session, line).contains("sweep"), "{line}");
+    }
+    assert!(refused(&mut session, "trace push to 2 of rz b[0,0]").contains("has no rotation"));
+    assert!(refused(&mut read(TWO), "sample P=uniform(1,2) of dissipated").contains("has no `stages`"));
+    assert!(refused(&mut session, "show P").contains("`P` is a parameter"));
+}
+
+/// What is written for others keeps the labels of the units, and names of files have no blanks.
+#[test]
+fn systems_keep_their_units() {
+    let folder = tempfile::tempdir().expect("a place");
+    let mut session = read(TWO);
+    for what in ["system", "lcp"] {
+        let file = folder.path().join(format!("{what}.json"));
+        text(&mut session, &format!("export {what} {}", file.display()));
+        let written: serde_json::Value = serde_json::from_slice(&std::fs::read(&file).expect("written")).expect("JSON");
+        assert_eq!(written["units"], serde_json::json!({"length": "m", "force": "kN"}));
+        let again = stickslip::model::load::load_text("again.json", &written.to_string(), None).expect("a scenario");
+        assert_eq!((again.units.length.as_deref(), again.units.force.as_deref()), (Some("m"), Some("kN")));
+    }
+    let mut tower = super::lines::embedded("tower");
+    text(&mut tower, &format!("export report {}", folder.path().join("t.md").display()));
+    let files: Vec<String> = std::fs::read_dir(folder.path())
+        .expect("files")
+        .map(|file| file.expect("a file").file_name().into_string().expect("text"))
+        .collect();
+    assert!(
+        files.contains(&"t-moment-M_y.svg".to_owned()) && files.iter().all(|file| !file.contains(' ')),
+        "{files:?}"
+    );
+    let report = std::fs::read_to_string(folder.path().join("t.md")).expect("written");
+    assert!(report.contains("t-moment-M_y.svg"), "the report names its figures");
+}

@@ -71,13 +71,22 @@ fn read_words<'w>(
 ) -> Result<(Quantity, &'w [String]), QuantityError> {
     let Some(entry) = entry(first) else {
         let probes = names.probes.iter().map(|(name, _)| name.as_str());
+        if names.parameters.contains(&first) {
+            return error(format!("`{first}` is a parameter, not a quantity of the answer: `params` shows its value"));
+        }
         let near = did_you_mean_typed(first, words_of(names.dimension).map(|known| known.word).chain(probes));
         return error(format!("unknown quantity `{first}`{near}; `help show` lists them"));
     };
     lies_there(entry, names)?;
     let argument = |rest: &'w [String]| match rest.split_first() {
         Some((argument, rest)) if !argument.is_empty() => Ok((argument.clone(), rest)),
-        _ => error(format!("`{}` of what? Write `{} {}`", entry.word, entry.word, entry.meaning.arguments())),
+        _ => error(format!(
+            "`{}` of what? Write `{} {}`{}",
+            entry.word,
+            entry.word,
+            entry.meaning.arguments(),
+            also_a_parameter(entry.word, names)
+        )),
     };
     match entry.meaning {
         Meaning::Answer(which) => Ok((Quantity::Answer(which), rest)),
@@ -180,7 +189,16 @@ fn lies_there(entry: &Word, names: &Names<'_>) -> Result<(), QuantityError> {
         ("Vy", Dimension::Plane) => ": it has `Q`",
         _ => "",
     };
-    error(format!("`{}` is a quantity of {other}, and this {what} lies in {here}{instead}", entry.word))
+    let parameter = also_a_parameter(entry.word, names);
+    error(format!("`{}` is a quantity of {other}, and this {what} lies in {here}{instead}{parameter}", entry.word))
+}
+
+/// Where the value of a parameter is shown that has the name of a quantity.
+fn also_a_parameter(word: &str, names: &Names<'_>) -> &'static str {
+    match names.parameters.contains(&word) {
+        true => "; the value of the parameter of this name is shown by `params`",
+        false => "",
+    }
 }
 
 /// Refuses what is neither a node nor one of the `others`.
@@ -204,7 +222,8 @@ fn bar<'w>(
     over: Option<Over>,
 ) -> Result<(Quantity, &'w [String]), QuantityError> {
     let Some((name, rest)) = rest.split_first() else {
-        return error(format!("`{}` of which bar?", which.symbol()));
+        let word = which.symbol();
+        return error(format!("`{word}` of which bar?{}", also_a_parameter(word, names)));
     };
     known("bar", name, &names.bars)?;
     let found = |place, rest| Ok((Quantity::Bar(which, name.clone(), place), rest));
@@ -430,6 +449,7 @@ mod tests {
             ("x_n c9", "no pair `c9`"),
             ("x_n joint[*]", "put sum, max or min before it"),
             ("x_n", "`x_n` of what? Write `x_n PAIR`"),
+            ("F2", "`F2` is a parameter, not a quantity of the answer: `params` shows its value"),
             ("M CD", "no bar `CD`"),
             ("M AB at x", "`x` is not a distance"),
             ("sum M AB", "expected a number of pairs"),

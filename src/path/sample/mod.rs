@@ -238,6 +238,8 @@ pub fn sample(case: Case<'_>, request: &Request) -> Result<Sampled, PathError> {
     let mut exact = None;
     if !request.crude && case.prepared.system().is_some_and(|system| !system.is_in_space()) {
         let found = match &request.variables[..] {
+            // What takes a history or a search of its own at each value is drawn.
+            [one] if !request.quantities.iter().all(Quantity::is_of_state) => exact::of_one(case, one, &[]),
             [one] => exact::of_one(case, one, &request.quantities),
             [one, other] => exact::of_two(case, [one, other]),
             _ => Ok(None),

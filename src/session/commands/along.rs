@@ -56,10 +56,22 @@ impl Session {
         quantities: &[Quantity],
         watch: &dyn Watch,
     ) -> Result<Vec<OnPath>, CommandError> {
+        if let Some(quantity) = quantities.iter().find(|quantity| quantity.is_of_history()) {
+            return Err(CommandError::Refused(format!(
+                "`{quantity}` is of the load history, which a path does not follow at each of its places: \
+                 `sweep NAME A..B N --columns '{quantity}'` does"
+            )));
+        }
         let all = quantities.iter().map(|quantity| (quantity.clone(), self.along(prepared, path, quantity, watch)));
         let all: Vec<_> = all.collect();
         match all.iter().find(|(_, values)| values.iter().all(Option::is_none)) {
-            Some((quantity, _)) => Err(CommandError::Refused(format!("{quantity} has no value on this path"))),
+            Some((quantity, _)) => {
+                let why = |facts: &Facts<'_>| facts.value(quantity).err();
+                let first = path.places.first().map(|place| self.with_place(prepared, path, place, watch, why));
+                let why =
+                    first.and_then(|read| read.unwrap_or_else(Some)).map_or(String::new(), |why| format!(": {why}"));
+                Err(CommandError::Refused(format!("{quantity} has no value on this path{why}")))
+            }
             None => Ok(all),
         }
     }

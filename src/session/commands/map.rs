@@ -93,7 +93,10 @@ impl Session {
                     return refused("map: one quantity after `of`");
                 };
                 if !quantity.is_of_state() {
-                    return refused(format!("map: `{quantity}` is not a quantity of a single state"));
+                    return refused(format!(
+                        "map: `{quantity}` is not read from one state: it takes a history or a search of its own at each place; \
+                         `sweep P A..B Q C..D --columns '{quantity}'` has it on a grid"
+                    ));
                 }
                 (&words[..at], Some(quantity.clone()))
             }

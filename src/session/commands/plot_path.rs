@@ -3,11 +3,13 @@
 use std::io::Write;
 use std::sync::Arc;
 
+use serde_json::{Map, Value};
+
 use crate::model::parameter::ParameterValues;
 use crate::model::words::did_you_mean_typed;
 use crate::model::words::no_such;
 use crate::path::quantity::OnPath;
-use crate::path::record::{Followed, PathRecord};
+use crate::path::record::{Followed, PathPlace, PathRecord};
 use crate::session::commands::along::Along;
 use crate::session::{CommandError, Format, Output, Session};
 use crate::view;
@@ -80,6 +82,38 @@ impl Session {
             pairs = busiest(path, &ids);
         }
         Ok((view::plot::path::drawing(path, quantity, &pairs, over, units), None))
+    }
+
+    /// Quantities, or numbers of pairs as a picture of the path has them, at every place of it: with its stage, where there
+    /// are stages, the value that was followed, the factors of the load cases and what changes there.
+    pub(in crate::session) fn path_rows(&self, of: &[String], watch: &dyn Watch) -> Result<Value, CommandError> {
+        let path = self.need_path()?;
+        let (_, along) = self.path_chart(of, watch)?;
+        let along = match along {
+            Some(along) => along,
+            None => {
+                return Err(CommandError::Refused(format!(
+                    "export: a table of a path takes quantities, e.g. `z_t {}`; without them it has all numbers of the pairs",
+                    path.places.first().and_then(|place| place.pairs.first()).map_or("c1", |pair| pair.id.as_str())
+                )));
+            }
+        };
+        let row = |(k, place): (usize, &PathPlace)| {
+            let mut row = Map::new();
+            if let Some(stage) = place.stage {
+                row.insert("stage".to_owned(), stage.into());
+            }
+            row.insert("value".to_owned(), place.value.into());
+            for (case, factor) in path.cases.iter().zip(&place.factors) {
+                row.insert(format!("factor {case}"), (*factor).into());
+            }
+            for (quantity, values) in &along {
+                row.insert(quantity.to_string(), values.get(k).copied().flatten().into());
+            }
+            row.insert("change".to_owned(), place.change.as_str().into());
+            Value::Object(row)
+        };
+        Ok(path.places.iter().enumerate().map(row).collect())
     }
 
     /// Keeps a path that was followed under the present values.

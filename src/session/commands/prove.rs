@@ -121,7 +121,7 @@ impl Session {
     /// Writes the numbers of proofs as a scenario; its text.
     fn write_system(&self, system: &ProvedSystem, path: &Path) -> Result<String, CommandError> {
         let title = format!("System of {}: {}", self.now.scenario.name, self.now.scenario.title);
-        let value = proof_export::system(system, &title);
+        let value = proof_export::system(system, &title, &self.now.scenario.units);
         let text = printable::json(serde_json::to_string(&value).map_err(std::io::Error::other)?) + "\n";
         write(path, &text)?;
         Ok(text)

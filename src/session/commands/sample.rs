@@ -126,13 +126,14 @@ impl Session {
         if quantities.is_empty() && words.len() < asked.words.len() {
             return refused("sample: expected a quantity after `of`, e.g. `sample f=uniform(0.2,0.6) of max u`");
         }
-        if let Some(quantity) = quantities.iter().find(|quantity| !quantity.is_of_state()) {
+        self.need_stages("sample", &quantities)?;
+        if let Some(quantity) = quantities.iter().find(|quantity| quantity.is_word() && !quantity.is_of_state()) {
             return refused(match quantity {
                 Quantity::Answer(OfAnswer::Outcome) => {
                     "sample: the probability of collapse is told by every sample, with and without `of`: leave `outcome` out"
                         .to_owned()
                 }
-                _ => format!("sample: `{quantity}` is not a quantity of a single state"),
+                _ => format!("sample: `{quantity}` is a word, which has no mean and no quantiles"),
             });
         }
         let mut request =

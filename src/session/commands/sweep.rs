@@ -88,11 +88,17 @@ impl Session {
     fn columns(&self, text: Option<&str>) -> Result<Vec<Quantity>, CommandError> {
         let found = text.map_or(Ok(Vec::new()), |text| quantity::read_text(text, &self.names()));
         let found = found.map_err(|error| CommandError::Refused(format!("sweep: {error}")))?;
-        match found.iter().find(|quantity| quantity.is_of_history()) {
+        self.need_stages("sweep", &found)?;
+        Ok(found)
+    }
+
+    /// Refuses quantities of a load history that the scenario does not have.
+    pub(super) fn need_stages(&self, command: &str, quantities: &[Quantity]) -> Result<(), CommandError> {
+        match quantities.iter().find(|quantity| quantity.is_of_history()) {
             Some(quantity) if self.now.scenario.stages.is_empty() => Err(CommandError::Refused(format!(
-                "sweep: {quantity} is of the load history, and the scenario has no `stages`"
+                "{command}: {quantity} is of the load history, and the scenario has no `stages`"
             ))),
-            _ => Ok(found),
+            _ => Ok(()),
         }
     }
 

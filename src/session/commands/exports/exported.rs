@@ -144,12 +144,11 @@ impl Exported {
     }
 
     /// How many words may stand between it and the file.
-    pub fn most_words(self, ending: &str) -> usize {
+    pub fn most_words(self) -> usize {
         match self {
             Exported::Quantities | Exported::Envelope | Exported::Find => usize::MAX,
-            Exported::Cycle | Exported::Calibrate => usize::MAX,
+            Exported::Cycle | Exported::Calibrate | Exported::Path => usize::MAX,
             Exported::Slip | Exported::Force | Exported::Gap | Exported::Pressure | Exported::Traction => usize::MAX,
-            Exported::Path if ending == "svg" => usize::MAX,
             Exported::Sensitivity | Exported::Critical | Exported::Limit | Exported::Check | Exported::Report => 1,
             Exported::Moment | Exported::Shear | Exported::Axial => 1,
             Exported::ShearZ | Exported::Torsion | Exported::MomentY => 1,

@@ -25,7 +25,7 @@ impl Session {
         let ending = path.extension().and_then(|ending| ending.to_str());
         let files = match ending {
             Some("json") => {
-                let value = lcp_export::scenario(&lcp, &names, &title);
+                let value = lcp_export::scenario(&lcp, &names, &title, &scenario.units);
                 atomic::write(path, |out| {
                     let text = json_export::pretty(&value)?;
                     writeln!(out, "{text}")

@@ -40,7 +40,7 @@ use exported::Exported;
 ///
 /// Pictures go to .svg: `slip`, `force`, `gap`, `pressure` and `traction` of the state shown or at pivots that are
 /// named; `moment`, `shear` and `axial` of all bars on the structure, or of the bar that is named; `path` as `plot
-/// path` draws it, with the same words.
+/// path` draws it, with the same words. `export path QUANTITY FILE.csv` has the quantities at every place of the path.
 ///
 /// `export lcp` writes M, q and the covering d, in the units of the scenario: to .json as a scenario of this program,
 /// or M to FILE.mtx, q to FILE.q.mtx and d to FILE.d.mtx in Matrix Market format; a scenario reads M back with
@@ -129,7 +129,7 @@ impl Session {
                 "{file} must end in {fitting}: `help export` says what goes where"
             )));
         }
-        if let Some(word) = of.get(what.most_words(ending)) {
+        if let Some(word) = of.get(what.most_words()) {
             return Err(CommandError::Refused(format!(
                 "export: `{word}` makes no sense here; `help export` says what does"
             )));

@@ -50,7 +50,7 @@ impl Session {
             return atomic::write(path, |out| out.write_all(text.as_bytes())).map_err(refused);
         }
         let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        let file = |name: &str| format!("{stem}-{name}.svg");
+        let file = |name: &str| format!("{stem}-{}.svg", name.replace(' ', "-"));
         let figures: Vec<(PathBuf, &str)> = report
             .blocks
             .iter()

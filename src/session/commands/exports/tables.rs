@@ -31,7 +31,7 @@ impl Session {
                 let shown = self.shown(what)?;
                 atomic::write(path, |out| records_csv(what, &shown, out))
             }
-            Exported::Path if csv => {
+            Exported::Path if csv && of.is_empty() => {
                 let record = self.need_path()?;
                 atomic::write(path, |out| path_export::csv(out, record))
             }
@@ -84,7 +84,8 @@ impl Session {
             Exported::Displacements => json_export::displacements(&self.shown(what)?),
             Exported::Members => json_export::members(&self.shown(what)?),
             Exported::Reactions => json_export::reactions(&self.shown(what)?),
-            Exported::Path => json!(self.need_path()?),
+            Exported::Path if of.is_empty() => json!(self.need_path()?),
+            Exported::Path => self.path_rows(of, io.watch)?,
             Exported::Map => self.map_json(&self.need_map()?),
             Exported::Sample => self.sample_rows()?,
             Exported::Result => {
