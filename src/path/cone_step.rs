@@ -6,6 +6,7 @@ use std::cell::Cell;
 use nalgebra::DVector;
 
 use super::kept_forces::kept_forces;
+use super::resisted::{Place, resisted};
 use super::start::{PathError, cold, state_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{PairState, State};
@@ -16,6 +17,7 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::sum::Sum;
 use crate::contact::written::ContactLcp;
 use crate::lcp::outcome::RayDirection;
+use crate::lcp::problem::NOISE;
 use crate::watch::Watch;
 
 /// Fewest facets of the polygon in a path, on which directions of slip turn.
@@ -114,10 +116,30 @@ impl<'a> Stepper<'a> {
                 Box::new((found.contact.clone(), ray, p))
             });
             if facets >= FINEST {
-                return Ok(Err(ray));
+                let Some(force) = force else { return Ok(Err(ray)) };
+                return Ok(self.beyond_a_jump((&problem, exact.as_ref()), from, force)?.ok_or(ray));
             }
             facets *= 2;
         }
+    }
+
+    /// The answer at which a structure comes to rest that moves on from a state without an answer near it.
+    fn beyond_a_jump(
+        &self,
+        (problem, exact): (&ContactProblem, Option<&ContactProblem>),
+        from: &DVector<f64>,
+        force: &DVector<f64>,
+    ) -> Result<Option<Step>, PathError> {
+        let start = (from - slips_of(problem, from), force.clone());
+        let at_rest = |(z, force): &Place| match exact {
+            Some(exact) => {
+                let pairs = cone_pairs(exact);
+                let found = self.mixed((problem, &MixedProblem::new(exact, &pairs)), z, force)?;
+                Ok(found.map(|found| Step::of_mixed(problem, from, found)))
+            }
+            None => self.taken(problem, from, OnCone::new(problem).nearby(z, self.watch)),
+        };
+        resisted(exact.unwrap_or(problem), start, self.watch, &at_rest)
     }
 
     fn newton(
@@ -176,16 +198,23 @@ impl<'a> Stepper<'a> {
     ) -> Result<Option<Step>, PathError> {
         let pairs = cone_pairs(exact);
         let mixed = MixedProblem::new(exact, &pairs);
-        let near = |z: &DVector<f64>| -> Result<Option<MixedState>, PathError> {
-            let forces: Vec<Sum> = kept_forces(exact, z, force).iter().map(|force| Sum::exactly(*force)).collect();
-            let found = mixed.answer(z, &forces, self.watch).map_err(|_| PathError::Interrupted)?;
-            Ok(found.filter(|found| OnCone::new(problem).check(&found.z, &found.forces).passed))
-        };
+        let near = |z: &DVector<f64>| self.mixed((problem, &mixed), z, &kept_forces(exact, z, force));
         let Some(found) = near(start)? else { return Ok(None) };
         // Which forces are to stay is seen best where the motion is known.
         let found = near(&found.z)?.unwrap_or(found);
-        let increments = JointState { on_cone: true, ..JointState::of_mixed(problem, found) };
-        Ok(Some(Step::of(problem, from, increments)))
+        Ok(Some(Step::of_mixed(problem, from, found)))
+    }
+
+    /// The answer of a problem with joints in force form near displacements and forces, if it is one of the problem.
+    fn mixed(
+        &self,
+        (problem, mixed): (&ContactProblem, &MixedProblem<'_>),
+        z: &DVector<f64>,
+        force: &DVector<f64>,
+    ) -> Result<Option<MixedState>, PathError> {
+        let forces: Vec<Sum> = force.iter().map(|force| Sum::exactly(*force)).collect();
+        let found = mixed.answer(z, &forces, self.watch).map_err(|_| PathError::Interrupted)?;
+        Ok(found.filter(|found| OnCone::new(problem).check(&found.z, &found.forces).passed))
     }
 }
 
@@ -194,6 +223,11 @@ impl Step {
     fn of(problem: &ContactProblem, from: &DVector<f64>, increments: JointState) -> Step {
         let z = &increments.z + slips_of(problem, from);
         Step { z, scheme: scheme(problem, &increments.z), increments }
+    }
+
+    /// The same from the answer of a problem with joints in force form.
+    fn of_mixed(problem: &ContactProblem, from: &DVector<f64>, found: MixedState) -> Step {
+        Step::of(problem, from, JointState { on_cone: true, ..JointState::of_mixed(problem, found) })
     }
 }
 
@@ -221,10 +255,12 @@ fn exactly_behind(problem: &ContactProblem, from: &DVector<f64>) -> Option<Conta
     Some(behind_slips(exact, from))
 }
 
-/// z_τ of total displacements, 0 in the normal joints.
+/// z_τ of total displacements, 0 in the normal joints. Where joints repeat one another a slip that is rounding beside the
+/// largest displacement is none: what one joint is said to have slipped must not stand against another one that is held.
 fn slips_of(problem: &ContactProblem, z: &DVector<f64>) -> DVector<f64> {
     let pairs = problem.system.pair_count();
-    DVector::from_fn(z.len(), |joint, _| if joint < pairs { 0.0 } else { z[joint] })
+    let least = if problem.system.repeats_joints() { NOISE * z.amax() } else { 0.0 };
+    DVector::from_fn(z.len(), |joint, _| if joint < pairs || z[joint].abs() <= least { 0.0 } else { z[joint] })
 }
 
 /// What is left of the inequalities that keep a pair in its state, along the normal and along the tangents: a gap, a contact

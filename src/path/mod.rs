@@ -24,6 +24,7 @@ pub mod profile;
 pub mod quantity;
 pub(crate) mod rate;
 pub mod record;
+mod resisted;
 pub mod route;
 pub mod sample;
 pub mod sensitivity;

@@ -57,6 +57,8 @@ const CROWDED: usize = 4;
 const CERTIFIED_AT: f64 = 1e-6;
 /// A step that moves more than this share of the largest displacement …
 const FAR: f64 = 1e-4;
+/// … or than this where no answer was near, …
+const SEEN: f64 = 1e-6;
 /// … is looked at again this many times shorter …
 const SHORTER: f64 = 16.0;
 /// … and is a jump where the motion is still more than this part of it.
@@ -190,10 +192,10 @@ impl SpaceWalk<'_> {
         let problem = along(laws.problem, course);
         let to = reached(t, length);
         let guess = &self.z + &self.rate * length;
-        let step = match self.stepper.onward(problem(to), self.here(), &guess)? {
-            Some(step) => step,
+        let (step, is_near) = match self.stepper.onward(problem(to), self.here(), &guess)? {
+            Some(step) => (step, true),
             None => match self.stepper.anywhere(problem(to), &self.z, Some(&self.increments.force))? {
-                Ok(step) => step,
+                Ok(step) => (step, false),
                 Err(ray) => return Ok(Err(ray)),
             },
         };
@@ -201,9 +203,13 @@ impl SpaceWalk<'_> {
         let size = self.measure.size_with(&step.z, &step.increments.force);
         let motion = self.measure.of(&moved);
         let mut jump = false;
-        if motion > FAR * size {
+        if motion > if is_near { FAR } else { SEEN } * size {
             let guess = &self.z + &moved / SHORTER;
-            let nearer = self.stepper.onward(problem(t + length / SHORTER), self.here(), &guess)?;
+            let there = || problem(t + length / SHORTER);
+            let nearer = match self.stepper.onward(there(), self.here(), &guess)? {
+                None if !is_near => self.stepper.anywhere(there(), &self.z, Some(&self.increments.force))?.ok(),
+                nearer => nearer,
+            };
             jump = nearer.is_none_or(|nearer| self.measure.of(&(nearer.z - &self.z)) > STAYS * motion);
         }
         let ends = [&self.increments.force, &step.increments.force];
