@@ -15,6 +15,7 @@ mod load;
 mod load_amounts;
 mod map;
 mod map_in_space;
+mod pipes_in_space;
 mod prove;
 mod prove_altered;
 mod prove_in_space;
