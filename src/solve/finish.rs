@@ -31,7 +31,7 @@ impl Prepared {
     /// earlier state has left of these is replaced.
     pub(super) fn complete(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) {
         answer.notes = notes_on_shared_forces(problem, state);
-        let equilibrium = self.recover(answer, problem, state);
+        let equilibrium = self.recover(answer, problem, state, &state.z);
         judge(answer, check_contact(problem, state, equilibrium));
     }
 
@@ -43,20 +43,27 @@ impl Prepared {
 
     /// The part of [`Prepared::complete`] that [`Prepared::complete_joints`] leaves.
     pub(super) fn complete_rest(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) {
-        let equilibrium = self.recover(answer, problem, state);
+        let equilibrium = self.recover(answer, problem, state, &state.z);
         answer.check = answer.check.with_equilibrium(equilibrium);
         if !answer.check.passed {
             fail_check(answer);
         }
     }
 
-    /// Displacements, members and reactions of a state; the residual of its equilibrium, where there is a K.
-    pub(super) fn recover(&self, answer: &mut Answer, problem: &ContactProblem, state: &JointState) -> Option<f64> {
+    /// Displacements, members and reactions of a state; the residual of its equilibrium, where there is a K. z is as good as the
+    /// rounding of `met`, the largest numbers it was summed from: z itself where it was found at once.
+    pub(super) fn recover(
+        &self,
+        answer: &mut Answer,
+        problem: &ContactProblem,
+        state: &JointState,
+        met: &DVector<f64>,
+    ) -> Option<f64> {
         let mut equilibrium = None;
         if let Geometry::Structure { main, structure, .. } = &*self.geometry {
             let dislocation = problem.dislocation(&state.z);
             let u = main.displacements(&problem.factors, &dislocation);
-            let terms = problem.dislocation_sizes(state.z.abs());
+            let terms = problem.dislocation_sizes(met.abs());
             let compatibility = main.compatibility_residual(&u, &dislocation, &terms);
             let shared = state.shared_terms(&problem.system);
             let terms = JointTerms { dislocations: Some(&terms), shared: shared.as_ref() };

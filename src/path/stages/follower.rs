@@ -136,6 +136,7 @@ pub(super) trait Follower<'a> {
     /// see [`recorded`].
     fn stages(&mut self, (targets, enough): Targets<'_>) -> Result<(Vec<StageResult>, HistoryEnd), PathError> {
         let mut stages = Vec::new();
+        let mut met = DVector::zeros(self.place().laws.problem.system.joint_count());
         for (index, target) in targets.iter().enumerate() {
             let report = |t: f64| (index as f64 + t) / targets.len() as f64;
             let Place { factors, gaps, .. } = self.place();
@@ -148,7 +149,10 @@ pub(super) trait Follower<'a> {
                 }
                 followed => followed?,
             };
-            stages.push(self.result(way, &before, limit.as_ref()));
+            for moment in &way.moments {
+                met.zip_apply(&moment.state.z, |met: &mut f64, z| *met = met.max(z.abs()));
+            }
+            stages.push(self.result(way, (&before, &met), limit.as_ref()));
             if let Some((t, collapse)) = limit {
                 return Ok((stages, HistoryEnd::Limit { stage: index, t, collapse: Box::new(collapse) }));
             }
@@ -159,15 +163,20 @@ pub(super) trait Follower<'a> {
         Ok((stages, HistoryEnd::Complete))
     }
 
-    /// A stage that has been followed, from the pairs `before` it.
-    fn result(&self, mut way: Way, before: &[PairState], limit: Option<&(f64, Ray)>) -> StageResult {
+    /// A stage that has been followed, from the pairs `before` it; `met` are the largest |z| of all joints up to its end.
+    fn result(
+        &self,
+        mut way: Way,
+        (before, met): (&[PairState], &DVector<f64>),
+        limit: Option<&(f64, Ray)>,
+    ) -> StageResult {
         let Place { prepared, laws, factors, gaps, .. } = self.place();
         let system = &*laws.problem.system;
         tell_changes(&mut way.moments, || system.pairs.iter().map(|pair| pair.id.as_str()));
         let problem = self.problem_at(factors, gaps);
         let pairs = self.states();
         let slip = pairs.iter().zip(before).map(|(pair, before)| slip_since(pair, before)).collect();
-        let mut end = prepared.history_answer(&problem, &self.state(), &way.last_slip, pairs);
+        let mut end = prepared.history_answer(&problem, &self.state(), (&way.last_slip, met), pairs);
         if let Some((_, collapse)) = limit
             && end.is_answer()
         {
