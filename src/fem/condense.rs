@@ -49,8 +49,8 @@ impl MainSystem {
         if !loses(self.amplification, masters) {
             return Ok(());
         }
-        let is_wrong = !self.stiffness_is_right(structure, watch)?;
-        self.condense_doubled(is_wrong, structure, watch)
+        let is_right = self.correct_stiffness(structure, watch)?;
+        self.condense_doubled(!is_right, structure, watch)
     }
 
     /// RF in doubled precision, which takes a few solutions; R too if it is asked for, which takes one for each column.
