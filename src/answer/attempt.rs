@@ -38,12 +38,14 @@ pub enum AttemptEngine {
     LoadPath,
     /// Lemke's algorithm on a bimatrix game stated with the values of its players as unknowns.
     Bimatrix,
+    /// One z after another of a triangular M.
+    Substitution,
 }
 
 impl AttemptEngine {
     /// Whether what it finds comes without pivots of the problem itself.
     pub fn is_without_pivots(self) -> bool {
-        matches!(self, AttemptEngine::Enumeration | AttemptEngine::Bimatrix)
+        matches!(self, AttemptEngine::Enumeration | AttemptEngine::Bimatrix | AttemptEngine::Substitution)
     }
 }
 
@@ -134,6 +136,7 @@ impl fmt::Display for AttemptEngine {
             AttemptEngine::Enumeration => f.write_str("enumeration"),
             AttemptEngine::LoadPath => f.write_str("load-path"),
             AttemptEngine::Bimatrix => f.write_str("bimatrix"),
+            AttemptEngine::Substitution => f.write_str("substitution"),
         }
     }
 }

@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use super::cold::Extent;
 use super::error::{QuestionError, SolveError};
 use super::plain::plain_answer;
-use super::plain_answers::{Effort, search_plain_answers};
+use super::plain_answers::{Effort, all_plain_answers};
 use super::prepared::{Geometry, Prepared};
 use super::problem::{contact_problem, factors};
 use super::state::Solved;
@@ -202,7 +202,7 @@ fn too_many(what: &str, found: usize, most: usize) -> Result<(), QuestionError> 
 
 fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers, QuestionError> {
     too_many("rows", lcp.size(), MOST_ROWS)?;
-    let found = search_plain_answers(lcp, Effort::Full, watch).ok_or(QuestionError::Interrupted)?;
+    let found = all_plain_answers(lcp, Effort::Full, watch).ok_or(QuestionError::Interrupted)?;
     let rules = AttemptRules {
         covering: AttemptCovering::Plain(PlainCovering::Ones),
         tie_break: TieBreak::Lexicographic,

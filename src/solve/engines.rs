@@ -32,7 +32,7 @@ use crate::watch::Watch;
 /// Most contact pairs that the exact engine takes.
 pub const EXACT_PAIRS: usize = 60;
 /// Most rows of a bare LCP that the exact engine takes.
-pub const EXACT_ROWS: usize = 3 * EXACT_PAIRS;
+pub const EXACT_ROWS: usize = 400;
 
 /// No run makes more pivots than this; reaching it is an outcome of its own.
 pub const PIVOT_LIMIT: usize = 200_000;

@@ -11,7 +11,7 @@ use super::engines::{EXACT_ROWS, run_exact_plain, run_scheme, run_tableau};
 use super::error::SolveError;
 use super::finish::{empty_answer, fail_check};
 use super::ladder::{EXACT_BUDGET, LAST_RESORT, Ladder, others};
-use super::plain_answers::{PlainAnswers, RayProof, all_plain_answers, prove_plain_ray};
+use super::plain_answers::{Effort, PlainAnswers, RayProof, all_plain_answers, prove_plain_ray};
 use super::settle::{ray_holds, settled};
 use super::state::{LookedAt, RunData, Solved};
 use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules, PlainCovering};
@@ -20,6 +20,8 @@ use crate::answer::check_plain::{ROW_ROUNDING, check_plain};
 use crate::answer::record::{OutcomeKind, PlainSolution, Size, Verdict};
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::sentence;
+use crate::lcp::exact::dyadic::nearest;
+use crate::lcp::exact::triangular;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, Run};
 use crate::lcp::pivot::PivotLog;
@@ -32,9 +34,21 @@ use crate::watch::{Budget, Watch};
 const UNKNOWN: &str = "For a general M this proves nothing about whether one exists.";
 /// What is said where all bases were tried.
 const ALL_BASES: &str = "Proved: every complementary basis was tried in exact arithmetic, none is an answer.";
-/// What is said of an equilibrium.
-const OF_GAME: &str =
-    "this is a bimatrix game; stated with the players' values as unknowns Lemke's algorithm finds an equilibrium";
+/// Finds z of an LCP of some class, which the caller checks; `None` where it is not of that class, or none was found.
+type Special = fn(&MirroredLcp, &dyn Watch) -> Result<Option<Vec<f64>>, SolveError>;
+/// Ways to an answer that fit the data of some LCPs only, and what is said of it.
+const SPECIAL: [(AttemptEngine, Special, &str); 2] = [
+    (
+        AttemptEngine::Substitution,
+        by_substitution,
+        "M is triangular with a positive diagonal, its rows in some order: this is the one answer, one z after another",
+    ),
+    (
+        AttemptEngine::Bimatrix,
+        equilibrium,
+        "this is a bimatrix game; stated with the players' values as unknowns Lemke's algorithm finds an equilibrium",
+    ),
+];
 /// Rows up to which all bases are tried before anything else.
 const FEW_ROWS: usize = 9;
 /// Random covering vectors that are tried.
@@ -196,10 +210,11 @@ pub(super) fn solve_plain_judged(
 /// Proofs that there is no answer, then other rules, then all bases; the first answer wins. Without one the first run
 /// is shown, with what was proved.
 fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn Watch) -> Result<Solved, SolveError> {
-    if let Some(z) = equilibrium(&problem.lcp, watch)? {
-        let found = plain_answer(&problem.lcp, &z, AttemptRules::from(own).by(AttemptEngine::Bimatrix));
+    for (engine, special, note) in SPECIAL {
+        let Some(z) = special(&problem.lcp, watch)? else { continue };
+        let found = plain_answer(&problem.lcp, &z, AttemptRules::from(own).by(engine));
         let mut ladder = Ladder::new(first);
-        match ladder.first_answer(std::iter::once(Ok(found)), Some(OF_GAME.to_owned()))? {
+        match ladder.first_answer(std::iter::once(Ok(found)), Some(note.to_owned()))? {
             Some(answer) => return Ok(answer),
             None => first = ladder.without_answer(),
         }
@@ -219,7 +234,7 @@ fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn
         return Ok(first);
     }
     let budget = Budget::new(watch, EXACT_BUDGET);
-    let found = all_plain_answers(&problem.lcp, &budget);
+    let found = all_plain_answers(&problem.lcp, Effort::Brief, &budget);
     let too_long = budget.ran_out() && found.as_ref().is_some_and(|found| !found.complete);
     if found.as_ref().is_some_and(PlainAnswers::none)
         && let Some(ray) = &first.plain_ray
@@ -252,15 +267,52 @@ fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn
     if let Some(solved) = ladder.climb(&rungs, budget, watch, &attempt, &proved)? {
         return Ok(solved);
     }
-    if let Some(found) = &found {
-        let state =
-            |z: &Vec<f64>| Ok(plain_answer(&problem.lcp, z, AttemptRules::from(own).by(AttemptEngine::Enumeration)));
-        let note = others(found.answers.len(), !found.continua.is_empty(), found.complete);
-        if let Some(answer) = ladder.first_answer(found.answers.iter().map(state), note)? {
-            return Ok(answer);
+    by_all_bases(problem, ladder, found, own, watch)
+}
+
+/// The first answer among all bases, searched more patiently where a brief search came to no end; or what no answer among
+/// them proves of the first run.
+fn by_all_bases(
+    problem: &PlainProblem,
+    mut ladder: Ladder,
+    brief: Option<PlainAnswers>,
+    own: PlainRules,
+    watch: &dyn Watch,
+) -> Result<Solved, SolveError> {
+    let is_open = |found: &PlainAnswers| !found.complete && found.answers.is_empty();
+    let found = match brief {
+        Some(brief) if is_open(&brief) => {
+            all_plain_answers(&problem.lcp, Effort::Patient, &Budget::new(watch, EXACT_BUDGET))
         }
+        brief => brief,
+    };
+    if watch.stop() {
+        return Err(SolveError::Interrupted);
     }
-    Ok(ladder.without_answer())
+    let Some(found) = found else { return Ok(ladder.without_answer()) };
+    let state =
+        |z: &Vec<f64>| Ok(plain_answer(&problem.lcp, z, AttemptRules::from(own).by(AttemptEngine::Enumeration)));
+    let note = others(found.answers.len(), !found.continua.is_empty(), found.complete);
+    if let Some(answer) = ladder.first_answer(found.answers.iter().map(state), note)? {
+        return Ok(answer);
+    }
+    let mut first = ladder.without_answer();
+    if let Some(ray) = first.plain_ray.as_ref().filter(|_| found.none() && first.answer.ray.is_some()) {
+        first.answer.ray = Some(ray.record(Verdict::Proved, ALL_BASES));
+    }
+    Ok(first)
+}
+
+/// z of a triangular M, one after another in exact arithmetic, rounded.
+fn by_substitution(lcp: &MirroredLcp, watch: &dyn Watch) -> Result<Option<Vec<f64>>, SolveError> {
+    let plain = lcp.mirrors.iter().all(Option::is_none);
+    let Some(order) = plain.then(|| triangular::order(&lcp.base)).flatten() else { return Ok(None) };
+    let budget = Budget::new(watch, EXACT_BUDGET);
+    let z = triangular::answer(&lcp.base, lcp.q.as_slice(), &order, &mut || !budget.stop());
+    if z.is_none() && !budget.ran_out() {
+        return Err(SolveError::Interrupted);
+    }
+    Ok(z.map(|z| z.iter().map(nearest).collect()))
 }
 
 /// An answer of a bare LCP found without pivots of its own, as a solved state, freshly checked.

@@ -19,6 +19,8 @@ use crate::watch::Watch;
 const MOST_CHECKED: usize = 1000;
 /// Steps times n³ after which a search that accompanies a solution is given up; nine rows need 1023 nodes.
 const BRIEF: u64 = 40_000_000;
+/// The same where nothing else found an answer.
+const PATIENT: u64 = 50 * BRIEF;
 /// Steps between two reports of progress.
 const STEPS: u64 = 64;
 
@@ -27,8 +29,10 @@ const STEPS: u64 = 64;
 pub enum Effort {
     /// As long as it takes, or until it is stopped; what was found until then is kept.
     Full,
-    /// A number of steps that takes a few seconds.
+    /// A number of steps that takes a part of a second: it accompanies a solution.
     Brief,
+    /// A number of steps that takes some seconds: nothing else found an answer.
+    Patient,
 }
 
 /// A set of answers with more than one element.
@@ -112,13 +116,8 @@ pub fn check_plain_exactly(lcp: &MirroredLcp, basis: &[usize], watch: &dyn Watch
     Some(check)
 }
 
-/// Every answer of a bare LCP, given up after some seconds: it accompanies a solution.
-pub fn all_plain_answers(lcp: &MirroredLcp, watch: &dyn Watch) -> Option<PlainAnswers> {
-    search_plain_answers(lcp, Effort::Brief, watch)
-}
-
 /// Every answer of a bare LCP, in exact arithmetic; `None` where nothing was searched (contact's mirrored rows).
-pub fn search_plain_answers(lcp: &MirroredLcp, effort: Effort, watch: &dyn Watch) -> Option<PlainAnswers> {
+pub fn all_plain_answers(lcp: &MirroredLcp, effort: Effort, watch: &dyn Watch) -> Option<PlainAnswers> {
     let n = lcp.size() as u64;
     if lcp.full_size != lcp.size() {
         return None;
@@ -126,6 +125,7 @@ pub fn search_plain_answers(lcp: &MirroredLcp, effort: Effort, watch: &dyn Watch
     let most = match effort {
         Effort::Full => u64::MAX,
         Effort::Brief => BRIEF / n.saturating_pow(3).max(1),
+        Effort::Patient => PATIENT / n.saturating_pow(3).max(1),
     };
     let mut steps = 0;
     let mut observer = |progress: Progress| {

@@ -5,6 +5,7 @@
 mod common;
 
 mod certificates;
+mod classes;
 mod cone;
 mod enumerate;
 mod explain_engines;

@@ -114,7 +114,7 @@ fn painleve_rod() {
 }
 
 /// w_i and the sum of the magnitudes of its terms in rationals: what an answer is worth, whatever the program says.
-fn worst_violation(matrix: &[Vec<f64>], q: &[f64], z: &[f64]) -> f64 {
+pub(super) fn worst_violation(matrix: &[Vec<f64>], q: &[f64], z: &[f64]) -> f64 {
     let exact = |x: f64| BigRational::from_float(x).expect("finite");
     assert!(z.iter().all(|z| *z >= 0.0), "{z:?}");
     let mut worst = 0.0f64;
@@ -139,7 +139,7 @@ fn scenario(matrix: &[Vec<f64>], q: &[f64], covering: Option<&[f64]>) -> String 
 }
 
 /// Solved as a user's scenario, with retries.
-fn solved(matrix: &[Vec<f64>], q: &[f64], covering: Option<&[f64]>) -> Solved {
+pub(super) fn solved(matrix: &[Vec<f64>], q: &[f64], covering: Option<&[f64]>) -> Solved {
     let scenario = load_text("lcp", &scenario(matrix, q, covering), None).expect("a scenario");
     let prepared = prepare(&scenario, &Quiet).expect("prepared");
     prepared.case(&scenario, &scenario.parameter_values()).solve().expect("solved")

@@ -6,6 +6,7 @@ use num_traits::{One, Signed, Zero};
 
 use crate::lcp::exact::dyadic::{WholeRows, rational_rows};
 use crate::lcp::exact::scalar::BigInt;
+use crate::lcp::exact::triangular;
 
 /// Largest number of rows for which all principal minors are examined.
 const MOST_MINORS: usize = 10;
@@ -47,10 +48,8 @@ pub fn solvable_class(matrix: &DMatrix<f64>, go_on: &mut dyn FnMut() -> bool) ->
     if matrix.iter().all(|entry| *entry >= 0.0) {
         return Some(SolvableClass::NonNegative);
     }
-    if n > MOST_MINORS {
-        return None;
-    }
-    is_p_matrix(rational_rows(matrix)).then_some(SolvableClass::PMatrix)
+    let is_p = triangular::order(matrix).is_some() || n <= MOST_MINORS && is_p_matrix(rational_rows(matrix));
+    is_p.then_some(SolvableClass::PMatrix)
 }
 
 /// Leading minors of M + Mᵀ by elimination in integers.

@@ -20,8 +20,10 @@ use crate::lcp::ratio_test::TieRule;
 use crate::lcp::variable::Variable;
 use crate::watch::Watch;
 
-/// More bits than this are not tried.
+/// More bits than this are not tried …
 const MOST_BITS: u32 = 1 << 17;
+/// … and none that make the numbers of a tableau larger than this, in bits: 1 GB.
+const MOST_ROOM: u64 = 1 << 33;
 
 /// One row of the LCP in integers: scale · (M z + q + d p).
 #[derive(Clone, Debug)]
@@ -72,7 +74,8 @@ impl<'a> Exact<'a> {
     /// Repeats the run so far with twice the bits; false when there are no more, or when stopped.
     fn refine(&mut self) -> bool {
         let done = self.tableau.pivots().count();
-        while self.precision < MOST_BITS {
+        let entries = 2 * (self.lcp.size() as u64).pow(2).max(1);
+        while self.precision < MOST_BITS && entries * 2 * u64::from(self.precision) <= MOST_ROOM {
             self.precision *= 2;
             self.tableau = start(&self.lcp, &self.rule, self.precision);
             let repeated = (0..done).all(|_| !self.watch.stop() && self.tableau.step() == Step::Pivoted);

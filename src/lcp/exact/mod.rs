@@ -13,3 +13,4 @@ pub mod polyhedron;
 pub mod rational_solve;
 pub mod scalar;
 pub mod tableau;
+pub mod triangular;

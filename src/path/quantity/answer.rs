@@ -26,9 +26,15 @@ impl Facts<'_> {
                 let all = prepared
                     .all_answers(self.values, self.rules, self.watch)
                     .map_err(|error| NoValue(error.to_string()))?;
-                let proved = all.undecided == 0 && all.exact.iter().all(|exact| *exact);
-                if !proved || all.continuum.iter().any(|continuum| *continuum) {
-                    return none(format!("{} answers found, but their number is not proved", all.answers.len()));
+                if all.continuum.iter().any(|continuum| *continuum) {
+                    return none(
+                        "there are infinitely many answers, some next to one another: `enumerate` lists their corners",
+                    );
+                }
+                if all.undecided > 0 || !all.exact.iter().all(|exact| *exact) {
+                    let found = all.answers.len();
+                    let answers = if found == 1 { "answer was" } else { "answers were" };
+                    return none(format!("{found} {answers} found, but it is not proved that there are no others"));
                 }
                 count(all.answers.len())
             }
