@@ -1,7 +1,7 @@
 //! A bare LCP: one run under given rules, and the retries after one that ended badly.
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -51,6 +51,8 @@ const SPECIAL: [(AttemptEngine, Special, &str); 2] = [
 ];
 /// Rows up to which all bases are tried before anything else.
 const FEW_ROWS: usize = 9;
+/// A patient search of all bases ends after this time.
+const PATIENCE: Duration = Duration::from_secs(10);
 /// Random covering vectors that are tried.
 const RANDOM_COVERINGS: u64 = 3;
 
@@ -282,7 +284,7 @@ fn by_all_bases(
     let is_open = |found: &PlainAnswers| !found.complete && found.answers.is_empty();
     let found = match brief {
         Some(brief) if is_open(&brief) => {
-            all_plain_answers(&problem.lcp, Effort::Patient, &Budget::new(watch, EXACT_BUDGET))
+            all_plain_answers(&problem.lcp, Effort::Patient, &Budget::new(watch, PATIENCE))
         }
         brief => brief,
     };

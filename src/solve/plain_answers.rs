@@ -20,7 +20,7 @@ const MOST_CHECKED: usize = 1000;
 /// Steps times n³ after which a search that accompanies a solution is given up; nine rows need 1023 nodes.
 const BRIEF: u64 = 40_000_000;
 /// The same where nothing else found an answer.
-const PATIENT: u64 = 50 * BRIEF;
+const PATIENT: u64 = 500 * BRIEF;
 /// Steps between two reports of progress.
 const STEPS: u64 = 64;
 
