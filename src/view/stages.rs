@@ -31,11 +31,11 @@ pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Styl
     }
     for (index, stage) in history.stages.iter().enumerate() {
         for moment in stage.moments.iter().filter(|moment| moment.jump) {
-            let text = format!(
-                "stage {}: the structure jumps at {} of it; its energy balance does not close there",
-                index + 1,
-                short(moment.t)
-            );
+            let balance = match stage.energy.is_some_and(|energy| !energy.is_balanced()) {
+                true => "what its energy balance leaves over goes into motion there",
+                false => "what is lost there is part of what the stage dissipates",
+            };
+            let text = format!("stage {}: the structure jumps at {} of it; {balance}", index + 1, short(moment.t));
             style.paragraph(out, Role::Warning, &text)?;
         }
     }

@@ -10,10 +10,6 @@ use crate::fem::{Displacements, Loaded};
 use crate::solve::Prepared;
 use crate::solve::prepared::Geometry;
 
-/// What may be left over of the largest energy. Forces pass their check with a thousandth of this beside those that meet at a
-/// node, whose work may be a thousand times what is left of it.
-const BALANCED: f64 = 1e-6;
-
 /// D of a stage.
 pub(super) fn dissipated(system: &ContactSystem, moments: &[Moment]) -> f64 {
     let between = |ends: &[Moment]| match &ends[1].curve {
@@ -75,9 +71,10 @@ pub(super) fn balance(prepared: &Prepared, problem: &ContactProblem, history: &m
     for (stage, energy) in history.stages.iter_mut().zip(energies) {
         let left = (energy.work - energy.stored - stage.dissipated).abs();
         let residual = if largest > 0.0 { left / largest } else { 0.0 };
-        stage.energy = Some(Energy { residual, ..energy });
+        let energy = Energy { residual, ..energy };
+        stage.energy = Some(energy);
         // Where the structure jumps, the rest goes into its motion.
-        if residual > BALANCED && !stage.moments.iter().any(|moment| moment.jump) {
+        if !energy.is_balanced() && !stage.moments.iter().any(|moment| moment.jump) {
             stage.end.check.passed = false;
             stage.end.outcome = OutcomeKind::CheckFailed;
             stage.end.failure = Some(format!(

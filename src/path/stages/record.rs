@@ -84,6 +84,17 @@ pub struct Energy {
     pub residual: f64,
 }
 
+impl Energy {
+    /// What may be left over of the largest energy. Forces pass their check with a thousandth of this beside those that meet
+    /// at a node, whose work may be a thousand times what is left of it.
+    const BALANCED: f64 = 1e-6;
+
+    /// Whether no more is left over than rounding leaves.
+    pub fn is_balanced(&self) -> bool {
+        self.residual <= Energy::BALANCED
+    }
+}
+
 /// How a history ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HistoryEnd {
