@@ -62,6 +62,14 @@ impl AttemptRules {
     pub fn by(self, engine: AttemptEngine) -> AttemptRules {
         AttemptRules { engine, ..self }
     }
+
+    /// Why an answer has no pivots.
+    pub fn why_no_pivots(self) -> String {
+        match self.engine.is_without_pivots() {
+            true => format!("no pivots: the answer was found by {}", self.engine),
+            false => "no pivots: the main system is the answer".to_owned(),
+        }
+    }
 }
 
 /// One try of the solver.

@@ -37,7 +37,7 @@ pub fn write(
         pivots.iter().filter(|pivot| range.as_ref().is_none_or(|range| range.contains(&pivot.step))).collect();
     if chosen.is_empty() {
         let text = match (pivots.last(), &range) {
-            (None, _) => "no pivots: the main system is the answer".to_owned(),
+            (None, _) => answer.rules.why_no_pivots(),
             (Some(last), Some(range)) => {
                 format!("no pivots in {}..{}: there are 0..{}", range.start(), range.end(), last.step)
             }

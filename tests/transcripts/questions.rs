@@ -251,3 +251,16 @@ fn systems_keep_their_units() {
     let report = std::fs::read_to_string(folder.path().join("t.md")).expect("written");
     assert!(report.contains("t-moment-M_y.svg"), "the report names its figures");
 }
+
+/// An answer without pivots that is not that of the main system says by what it was found, wherever pivots are asked for: the
+/// game of Cottle, Pang & Stone 4.4.23, on which Lemke's algorithm ends in a ray at its first pivot.
+#[test]
+fn answers_without_pivots_say_who_found_them() {
+    let game = r#"{"format":"stickslip/1","title":"game","lcp":{"M":[[0,0,10,20],[0,0,30,15],[10,20,0,0],[30,15,0,0]],"q":[-1,-1,-1,-1]}}"#;
+    let mut session = read(game);
+    let found = "no pivots: the answer was found by bimatrix";
+    assert!(text(&mut session, "pivots").contains(found));
+    for line in ["step", "plot p"] {
+        assert!(refused(&mut session, line).contains(found), "{line}");
+    }
+}

@@ -110,7 +110,7 @@ impl Session {
     fn step(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
         let answer = self.need_answer()?;
         let (Some(last), Some(recorded)) = (answer.pivot_count.checked_sub(1), answer.last_recorded()) else {
-            return Err(CommandError::Refused("no pivots: the main system is the answer".into()));
+            return Err(CommandError::Refused(answer.rules.why_no_pivots()));
         };
         let here = self.shown_step().unwrap_or(last);
         let count = |word: &str| {

@@ -91,9 +91,8 @@ impl Session {
     /// The pairs at a pivot named `first`, `last` or by its number.
     fn pairs_named(&self, word: &str, last: Option<usize>) -> Result<(String, Vec<PairState>), CommandError> {
         let (Some(solved), Some(prepared), Some(last)) = (&self.solved, &self.now.prepared, last) else {
-            return Err(CommandError::Refused(
-                "plot: no pivots to choose with `--at`: the main system is the answer".into(),
-            ));
+            let why = self.need_answer()?.rules.why_no_pivots();
+            return Err(CommandError::Refused(format!("plot: nothing to choose with `--at`: {why}")));
         };
         let step = match word {
             "first" => 0,

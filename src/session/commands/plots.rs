@@ -193,10 +193,10 @@ impl Session {
     }
 
     pub(in crate::session) fn some_pivots(&self) -> Result<&[PivotRecord], CommandError> {
-        let pivots = &self.need_answer()?.pivots;
-        if pivots.is_empty() {
-            return Err(CommandError::Refused("no pivots: the main system is the answer".into()));
+        let answer = self.need_answer()?;
+        if answer.pivots.is_empty() {
+            return Err(CommandError::Refused(answer.rules.why_no_pivots()));
         }
-        Ok(pivots)
+        Ok(&answer.pivots)
     }
 }

@@ -73,11 +73,13 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     let pivots = &solved.answer.pivots;
     if pivots.is_empty() {
         let text = if state.shown.is_warm() {
-            "followed from the last answer; its pivots come in a moment"
+            "followed from the last answer; its pivots come in a moment".to_owned()
+        } else if solved.answer.rules.engine.is_without_pivots() {
+            solved.answer.rules.why_no_pivots()
         } else {
-            "no pivots: with every joint on nothing is violated, so the main system is the answer"
+            "no pivots: with every joint on nothing is violated, so the main system is the answer".to_owned()
         };
-        put_text(look, text, muted, area, buffer);
+        put_text(look, &text, muted, area, buffer);
         return;
     }
     let selected = (at(state, pivots), state.focus == Pane::Pivots);
@@ -218,6 +220,9 @@ pub fn sentence(state: &State) -> String {
         if let Some(step) = step {
             let last = answer.pivots.len() - 1;
             return format!("{}: counted but not recorded, as all after {last}.", capital(&title(step)));
+        }
+        if answer.rules.engine.is_without_pivots() {
+            return format!("{}.", capital(&answer.rules.why_no_pivots()));
         }
         return "With every joint on no condition is violated: the main system itself is the answer, \
                 without a pivot."

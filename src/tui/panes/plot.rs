@@ -139,7 +139,7 @@ fn pivots(state: &State, area: Rect) -> Vec<Line<'static>> {
     if answer.pivots.is_empty() {
         return vec![
             Line::styled("p over the pivots", state.look.role(Role::Title)),
-            Line::raw("no pivots: the main system is the answer"),
+            Line::raw(answer.rules.why_no_pivots()),
         ];
     }
     fitting(area, |height| {

@@ -17,10 +17,10 @@ pub(super) fn step_to(state: &mut State, step: usize) -> Vec<Effect> {
     let Some(last) = state.shown.last_step() else {
         let why = match state.shown.answer() {
             Some(_) if state.shown.stage.is_some() => {
-                "a stage is shown, whose events stand in Pivots; 8 goes back to the answer"
+                "a stage is shown, whose events stand in Pivots; 8 goes back to the answer".to_owned()
             }
-            Some(_) => "no pivots: the main system is the answer",
-            None => "not solved yet: `:solve`, or `:set auto on`",
+            Some(answer) => answer.rules.why_no_pivots(),
+            None => "not solved yet: `:solve`, or `:set auto on`".to_owned(),
         };
         state.say(Role::Warning, why);
         return Vec::new();
