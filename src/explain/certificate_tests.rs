@@ -42,7 +42,12 @@ fn search(touches: &[Touch], force: [f64; 3], moment: [f64; 3]) -> CertificateSe
     let work = -(motions.tr_mul(&load));
     assert!((&work - &resultant).amax() <= 1e-14 * resultant.amax(), "{work}");
     let load = Load { forces: &load, terms: &load.abs() };
-    certify_pairs(&pairs, &FreeMotions::of_kernel(&motions), load, Instant::now() + BUDGET)
+    certify_pairs(
+        &pairs,
+        &FreeMotions::of_kernel(&motions, &DVector::repeat(motions.nrows(), 1.0)),
+        load,
+        Instant::now() + BUDGET,
+    )
 }
 
 fn certified(touches: &[Touch], force: [f64; 3], moment: [f64; 3]) -> bool {

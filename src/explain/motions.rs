@@ -51,7 +51,7 @@ impl FreeMotions {
     pub fn new(system: &ContactSystem, structure: Option<(&Structure, &MainSystem)>) -> FreeMotions {
         match structure {
             Some((structure, main)) => FreeMotions::of_structure(structure, main),
-            None => FreeMotions::of_kernel(&system.kernel),
+            None => FreeMotions::of_kernel(&system.kernel, &system.stiffness.diagonal()),
         }
     }
 
@@ -78,17 +78,23 @@ impl FreeMotions {
         FreeMotions { rows, count: motions.len() }
     }
 
-    /// The columns of an orthonormal basis over the joints.
-    pub fn of_kernel(kernel: &DMatrix<f64>) -> FreeMotions {
-        let kernel = clean(kernel);
-        let rows = kernel
-            .row_iter()
-            .map(|row| {
+    /// The columns of an orthonormal basis over the joints, of these own stiffnesses. What is noise beside the largest entry
+    /// of a column is zero, but where the joint is so much stiffer than others that it may not be noise there.
+    pub fn of_kernel(kernel: &DMatrix<f64>, stiffness: &DVector<f64>) -> FreeMotions {
+        let simple = clean(kernel);
+        let force = |joint: usize, motion: usize| kernel[(joint, motion)].abs() * stiffness[joint].max(0.0).sqrt();
+        let largest: Vec<f64> = (0..kernel.ncols())
+            .map(|motion| (0..kernel.nrows()).map(|joint| force(joint, motion)).fold(0.0, f64::max))
+            .collect();
+        let rows = (0..kernel.nrows())
+            .map(|joint| {
                 // The columns are orthonormal to rounding: every entry is wrong by some ε of 1.
-                let entry = |(value, motion): (&f64, usize)| {
-                    (*value != 0.0).then_some(Entry { motion, part: Sum { value: *value, magnitude: 1.0 } })
+                let entry = |motion: usize| {
+                    let counts = simple[(joint, motion)] != 0.0 || force(joint, motion) > NOISE * largest[motion];
+                    let part = Sum { value: kernel[(joint, motion)], magnitude: 1.0 };
+                    counts.then_some(Entry { motion, part })
                 };
-                row.iter().zip(0..).filter_map(entry).collect()
+                (0..kernel.ncols()).filter_map(entry).collect()
             })
             .collect();
         FreeMotions { rows, count: kernel.ncols() }
