@@ -158,6 +158,8 @@ fn gmsh_2() {
         ("2.2 0 8", "2.2 0 4", 2, "numbers of 4 bytes"),
         ("1 1 \"bottom\"", "1 1 bottom", 6, "expected dimension, number and \"name\" of a group"),
         ("1 1 \"bottom\"", "7 1 \"bottom\"", 6, "expected dimension, number and \"name\" of a group"),
+        ("1 2 \"", "1 1 \"", 7, "group 1 of dimension 1 has two names, \"bottom\" and \""),
+        ("$Nodes\n", "$Entities\n0 0 0 0\n$EndEntities\n$Nodes\n", 10, "$Entities belongs to version 4.1"),
         ("$PhysicalNames\n3", "$PhysicalNames\n4", 9, "found \"$EndPhysicalNames\""),
         ("$Nodes\n", "$nodes\n", 10, "$nodes is not a section (did you mean \"$Nodes\"?)"),
         ("$EndElements\n", "", 27, "the file ends in the elements, before $EndElements"),

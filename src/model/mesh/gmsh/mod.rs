@@ -51,6 +51,13 @@ pub fn read(bytes: &[u8], name: &str) -> Result<RawMesh, MeshProblem> {
             ("Elements", Version::V4) => version4::elements(&mut source, &mut mesh, &groups)?,
             ("Nodes", Version::V2) => version2::nodes(&mut source, &mut mesh)?,
             ("Elements", Version::V2) => version2::elements(&mut source, &mut mesh)?,
+            ("Entities", Version::V2) => {
+                return Err(source.problem(
+                    "the section $Entities belongs to version 4.1 of the mesh format, and $MeshFormat says 2.2"
+                        .to_owned(),
+                    "save the mesh again, in one of the two versions",
+                ));
+            }
             ("PartitionedEntities" | "ParametricNodes" | "NOD" | "ELM", _) => {
                 return Err(source.problem(
                     format!("the section ${section} is not read"),
@@ -216,8 +223,15 @@ fn physical_names(source: &mut Source<'_>, groups: &mut Groups) -> Result<(), Me
         let (Some(dimension), Some(number), None) = (dimension, number, numbers.next()) else {
             return Err(wrong(source, line));
         };
-        // Gmsh writes a name again for a group of partitions: the first one stays.
-        groups.names.entry((dimension, number)).or_insert_with(|| (name.to_owned(), source.place()));
+        // Gmsh writes a name again for a group of partitions.
+        let (known, _) =
+            groups.names.entry((dimension, number)).or_insert_with(|| (name.to_owned(), source.place())).clone();
+        if known != name {
+            return Err(source.problem(
+                format!("group {number} of dimension {dimension} has two names, \"{known}\" and \"{name}\""),
+                "give each group a number of its own, or remove one of the names",
+            ));
+        }
     }
     Ok(())
 }
