@@ -1,6 +1,6 @@
 //! Supports and the displacements imposed on them.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::builder::{Builder, Settlement, entries};
 use super::reader::{Cursor, Fields};
@@ -10,9 +10,21 @@ use crate::model::uses::Region;
 /// Reads `supports`.
 pub fn read<'d>(builder: &mut Builder<'d>, fields: &Fields<'d>) {
     let mut held = HashSet::new();
+    let mut settled: HashMap<(usize, Component, Option<&str>), f64> = HashMap::new();
     for cursor in entries(fields, "supports") {
         for (support, settlement) in support(builder, cursor).unwrap_or_default() {
             if let Some((case, value)) = settlement {
+                let place = (support.node, support.component, case.string());
+                let known = if value == 0.0 { None } else { settled.insert(place, value) };
+                if let Some(known) = known.filter(|known| *known != value) {
+                    let node = &builder.structure.nodes[support.node].id;
+                    let word = builder.structure.dimension.word(support.component);
+                    case.problem(
+                        format!("node {node} settles along {word} by {known} and by {value} in the same case"),
+                        "give one of the two, or a case of its own to each: the settlements of two cases are added",
+                    );
+                    return;
+                }
                 builder.settlements.push(Settlement { case, node: support.node, component: support.component, value });
             }
             // Two edges share their corner: held twice is held.
