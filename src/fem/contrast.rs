@@ -36,6 +36,9 @@ impl Stiffnesses {
     }
 }
 
+/// A contrast below this is not what doubled precision, of 32 digits, fails at.
+const EXPLAINS: f64 = 1e10;
+
 /// The refusal of a structure whose stiffness is lost beside that of its stiffest part.
 pub fn refusal(structure: &Structure) -> MainSystemError {
     let id = |node: usize| structure.nodes[node].id.as_str();
@@ -75,6 +78,9 @@ pub fn refusal(structure: &Structure) -> MainSystemError {
     let (Some((soft, _, softest)), Some((stiff, node, stiffest))) = (parts.first(), parts.last()) else {
         return MainSystemError::NotFinite;
     };
+    if stiff / soft < EXPLAINS {
+        return MainSystemError::Slender { node: *node, stiffest: stiffest.clone() };
+    }
     MainSystemError::Contrast {
         node: *node,
         contrast: stiff / soft,

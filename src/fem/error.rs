@@ -46,6 +46,18 @@ pub enum MainSystemError {
         /// How many times as stiff.
         contrast: f64,
     },
+    /// The same where no part is much stiffer than another: the shape or the number of the elements is to blame.
+    #[error(
+        "the structure resists some motion by so little that even doubled precision loses it beside the stiffness of {stiffest}, \
+         though no part is much stiffer than another: elements are too long and thin, or too many in a row; use fewer ones, of \
+         better shape"
+    )]
+    Slender {
+        /// A node of the stiffest element.
+        node: usize,
+        /// The stiffest element, in words.
+        stiffest: String,
+    },
     /// The factorization met NaN or infinity.
     #[error("the stiffness matrix is not finite: check the sizes, materials and stiffnesses of the model")]
     NotFinite,

@@ -192,7 +192,9 @@ pub(super) fn main_system_problem(scenario: &Scenario, structure: &Structure, er
             let place = |body: usize| format!("rigid[{body}]");
             return problems_at(scenario, bodies.iter().map(|body| (place(body.body), body.to_string())));
         }
-        MainSystemError::Mechanism { node: at, .. } | MainSystemError::Contrast { node: at, .. } => node(*at),
+        MainSystemError::Mechanism { node: at, .. }
+        | MainSystemError::Contrast { node: at, .. }
+        | MainSystemError::Slender { node: at, .. } => node(*at),
         MainSystemError::Indefinite { .. } => "superelement.stiffness.file".to_owned(),
         MainSystemError::MomentWithoutRotation { case, .. } => format!("loads.{case}"),
         MainSystemError::Element { nodes, .. } => structure

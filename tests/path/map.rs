@@ -204,7 +204,7 @@ fn what_is_no_map_is_refused() {
         ("map f 1..0 F2 0..400", "the smaller value comes first"),
         ("map f -1..1 F2 0..400", "f"),
         ("map f 0..1 F2 0..400 of", "quantity"),
-        ("map f 0..1 F2 0..400 of limit pull", "not a quantity of a single state"),
+        ("map f 0..1 F2 0..400 of limit pull", "is not read from one state"),
         ("export map x.svg", "no map yet"),
         ("export map x.vtu", "must end in"),
     ] {

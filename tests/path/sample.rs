@@ -239,7 +239,7 @@ fn refusals_say_what_is_expected() {
         ("f=uniform(0,1) 1.5", "not a number of points"),
         ("f=uniform(0,1) 100 200", "one number of points"),
         ("f=uniform(0,1) 1e6 --crude", "belong in a file"),
-        ("f=uniform(0,1) of safety pull", "not a quantity of a single state"),
+        ("f=uniform(0,1) of outcome", "leave `outcome` out"),
         ("f = uniform", "`uniform` is not a distribution: expected uniform(LEAST, GREATEST)"),
         ("f=uniform(0,1) of", "expected a quantity after `of`"),
         ("f=uniform(0,1) of \"\"", "expected a quantity after `of`"),

@@ -5,7 +5,11 @@ use proptest::prelude::*;
 
 use super::builder::{Model, coulomb, frictionless, point};
 use crate::fem::{JointTerms, MainSystem, MainSystemError};
+use crate::model::load::load_text;
+use crate::model::pair::joints;
+use crate::model::scenario::Source;
 use crate::model::structure::Material;
+use crate::watch::Quiet;
 
 /// λ = RF and u with every joint on, balanced node by node.
 fn main_answer(model: &Model) -> (MainSystem, DVector<f64>, crate::fem::Displacements) {
@@ -116,6 +120,21 @@ fn contrast_beyond_all_precision() {
     near(*contrast, 12.0 * 1e20 * 8.0 / 1e-10, 1e-12);
     let text = error.to_string();
     assert!(text.contains("bar b") && text.contains("the spring at g"), "{text}");
+}
+
+/// A plate a million long and a millionth wide bends by (10¹²)³ times what its elements give: no contrast between parts, and
+/// told as what it is.
+#[test]
+fn elements_without_measure_are_told() {
+    let text = r#"{"format":"stickslip/1","title":"t","materials":{"s":{"E":1,"nu":0.2}},
+"plates":[{"id":"u","origin":[0,0],"size":[1e-6,1e6],"divisions":[2,2],"thickness":1,"material":"s","plane":"stress"}],
+"contacts":[{"id":"j","edge":"u.bottom","against":"ground","friction":0.5}],
+"loads":{"w":{"items":[{"point":{"at":"u.top","force":[0,-1]}}]}}}"#;
+    let scenario = load_text("plate", text, None).unwrap();
+    let Source::Structure(structure) = scenario.source else { panic!("a structure") };
+    let error = MainSystem::new(&structure, &joints(&structure.pairs), &Quiet).err().unwrap();
+    assert!(matches!(error, MainSystemError::Slender { .. }), "{error}");
+    assert!(error.to_string().contains("too long and thin"), "{error}");
 }
 
 /// Mechanisms whose coordinates are rounded: a chain of bars hinged end to end along a line at any angle, far from
