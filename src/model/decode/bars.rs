@@ -8,6 +8,7 @@ use crate::model::bar_axes::{AxesFault, BarAxes};
 use crate::model::space_section::EndJoint;
 use crate::model::structure::{Bar, Dimension, Element, ElementKind};
 use crate::model::vector::distance;
+use crate::text::number::short;
 
 /// A bar before its division.
 pub struct BarOutline<'d> {
@@ -200,13 +201,16 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: &Arc<st
         let size = from.iter().chain(&to).fold(0.0_f64, |size, x| size.max(x.abs()));
         // Written so that an unknown place (NaN, reported at the node) passes.
         if ends[0] == ends[1] || length <= 1e-12 * size {
-            let what = if nodes.len() == 2 {
-                format!("the bar \"{}\" has no length: both ends are", bar.id)
-            } else {
-                format!("a segment of the bar \"{}\" has no length: both its ends are", bar.id)
-            };
+            let part = if nodes.len() == 2 { "" } else { "a segment of " };
             let at = builder.structure.dimension.in_words(from);
-            bar.cursor.problem(format!("{what} at {at}"), "join two nodes at different places");
+            let (what, help) = if ends[0] == ends[1] || length == 0.0 {
+                let both = if nodes.len() == 2 { "both ends are" } else { "both its ends are" };
+                (format!("has no length: {both} at {at}"), "join two nodes at different places")
+            } else {
+                let what = format!("is only {} long, 1e-12 of its distance from the origin or less", short(length));
+                (what, "put the origin of the coordinates near the structure")
+            };
+            bar.cursor.problem(format!("{part}the bar \"{}\" {what}", bar.id), help);
             builder.broken.insert(bar.id);
             return;
         }
