@@ -17,15 +17,21 @@ fn id(name: &str) -> String {
     if id.starts_with(|c: char| c.is_ascii_alphabetic()) { id } else { format!("w_{id}") }
 }
 
+/// A `stickslip/1` scenario of this source, which is no structure.
+pub(super) fn of_source(key: &str, source: Value, title: &str, units: &Units) -> Value {
+    let mut scenario = json!({"format": FORMAT, "title": title});
+    if let Some(units) = units.json() {
+        scenario["units"] = units;
+    }
+    scenario[key] = source;
+    scenario
+}
+
 /// The LCP as a `stickslip/1` scenario with the source `lcp`: it loads and solves as it is.
 pub fn scenario(lcp: &Lcp<f64>, names: &[String], title: &str, units: &Units) -> Value {
     let names: Vec<String> = names.iter().map(|name| id(name)).collect();
-    let mut value = json!({"format": FORMAT, "title": title});
-    if let Some(units) = units.json() {
-        value["units"] = units;
-    }
-    value["lcp"] = json!({ "M": lcp.matrix, "q": lcp.q, "covering": lcp.covering, "names": names });
-    value
+    let source = json!({ "M": lcp.matrix, "q": lcp.q, "covering": lcp.covering, "names": names });
+    of_source("lcp", source, title, units)
 }
 
 /// A bare LCP as the text of a scenario, a row of M a line.

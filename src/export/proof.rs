@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 use num_rational::BigRational;
 use serde_json::{Map, Value, json};
 
+use super::lcp::of_source;
 use crate::contact::law::PairLaw;
 use crate::lcp::exact::dyadic::rational;
-use crate::model::scenario::FORMAT;
 use crate::model::units::Units;
 use crate::solve::prove::forms::Forms;
 use crate::solve::prove::system::{ProvedContact, ProvedSystem};
@@ -22,12 +22,7 @@ pub fn system(system: &ProvedSystem, title: &str, units: &Units) -> Value {
             ("lcp", json!({"names": names, "M": rows(matrix), "q": q.as_slice()}))
         }
     };
-    let mut value = json!({"format": FORMAT, "title": title});
-    if let Some(units) = units.json() {
-        value["units"] = units;
-    }
-    value[key] = source;
-    value
+    of_source(key, source, title, units)
 }
 
 fn rows(matrix: &DMatrix<f64>) -> Value {

@@ -89,11 +89,8 @@ impl Stiffness<'_> {
             "springs": self.structure.springs.iter().map(|one| self.spring(one, &nodes)).collect::<Vec<Value>>(),
             "contacts": contacts,
         });
-        let labels = [("length", &units.length), ("force", &units.force)];
-        let labels: Map<String, Value> =
-            labels.into_iter().filter_map(|(key, unit)| Some((key.to_owned(), json!(unit.as_ref()?)))).collect();
-        if !labels.is_empty() {
-            scenario["units"] = labels.into();
+        if let Some(labels) = units.json() {
+            scenario["units"] = labels;
         }
         if dimension == Dimension::Space {
             scenario["dimension"] = json!(3);

@@ -8,7 +8,7 @@ use stickslip::answer::record::OutcomeKind;
 use super::zoo::{solved, worst_violation};
 
 /// A random order of n things.
-fn shuffled(n: usize, random: &mut ChaCha8Rng) -> Vec<usize> {
+pub(super) fn shuffled(n: usize, random: &mut ChaCha8Rng) -> Vec<usize> {
     let mut order: Vec<usize> = (0..n).collect();
     for last in (1..n).rev() {
         order.swap(last, random.random_range(0..=last));

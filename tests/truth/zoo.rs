@@ -21,6 +21,8 @@ use stickslip::model::load::load_text;
 use stickslip::solve::{Solved, prepare};
 use stickslip::watch::Quiet;
 
+use super::classes::shuffled;
+
 fn solve(matrix: Vec<Vec<f64>>, q: Vec<f64>, rule: Option<TieRule>) -> Run {
     let n = q.len();
     let scale = Scale::plain(&matrix);
@@ -372,10 +374,7 @@ fn games_are_answered() {
     for case in 0..60 {
         let (a, b) = (random.random_range(1..20), random.random_range(1..20));
         let n: usize = a + b;
-        let mut order: Vec<usize> = (0..n).collect();
-        for last in (1..n).rev() {
-            order.swap(last, random.random_range(0..=last));
-        }
+        let order = shuffled(n, &mut random);
         let mut m = vec![vec![0.0; n]; n];
         for i in 0..n {
             for j in (0..n).filter(|&j| (i < a) != (j < a)) {
