@@ -78,7 +78,7 @@ impl<'a> OnCone<'a> {
         let exactly = |z: &DVector<f64>, forces: &[Sum], steps: usize| match &exact {
             None => Ok(None),
             Some(exact) => Ok(MixedProblem::new(exact, &self.pairs)
-                .answer(z, forces, watch)?
+                .answer(z, &|joint| forces[joint].value, watch)?
                 .map(|found| self.reached(found, start, steps))
                 .filter(|found| found.check.passed)),
         };
@@ -194,5 +194,6 @@ pub fn with_repeated_joints(
         None => problem.system.force_form.is_some().then(|| problem.clone()),
     };
     let pairs = cone_pairs(problem);
-    yielded.map_or(Ok(None), |problem| MixedProblem::new(&problem, &pairs).answer(z, forces, watch))
+    yielded
+        .map_or(Ok(None), |problem| MixedProblem::new(&problem, &pairs).answer(z, &|joint| forces[joint].value, watch))
 }

@@ -45,8 +45,11 @@ impl MainSystem {
         for round in 0.. {
             let sizes = self.r.diagonal().map(|stiffness| stiffness.max(0.0).sqrt());
             let own = sizes.map(|size| if size > 0.0 { size.recip() } else { 0.0 });
-            let own = DMatrix::from_diagonal(&own);
-            let test = self.without_kernel(&own * shapes(self.joints.len(), round));
+            let scaled = |mut columns: DMatrix<f64>| {
+                columns.column_iter_mut().for_each(|mut column| column.component_mul_assign(&own));
+                columns
+            };
+            let test = self.without_kernel(scaled(shapes(self.joints.len(), round)));
             let Some(lost) = self.lost(&test, structure, watch)? else { return Ok(false) };
             let share = share_of_believed(&lost, &test, &sizes);
             if share <= 1.0 {
@@ -59,11 +62,11 @@ impl MainSystem {
                 return Ok(false);
             }
             last = share;
-            let directions = (&own * lost).qr().q();
-            let Some(lost) = self.lost(&self.without_kernel(&own * &directions), structure, watch)? else {
+            let directions = scaled(lost).qr().q();
+            let Some(lost) = self.lost(&self.without_kernel(scaled(directions.clone())), structure, watch)? else {
                 return Ok(false);
             };
-            let lost = &own * lost;
+            let lost = scaled(lost);
             let inner = directions.transpose() * &lost;
             let half = lost - &directions * (&inner + inner.transpose()) * 0.25;
             let change = half * directions.transpose();

@@ -14,7 +14,6 @@ use crate::contact::cone::{ConeAnswer, ConeFailure, MixedProblem, MixedState};
 use crate::contact::on_cone::{OnCone, cone_pairs};
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
-use crate::contact::sum::Sum;
 use crate::contact::written::ContactLcp;
 use crate::lcp::outcome::RayDirection;
 use crate::lcp::problem::NOISE;
@@ -212,8 +211,7 @@ impl<'a> Stepper<'a> {
         z: &DVector<f64>,
         force: &DVector<f64>,
     ) -> Result<Option<MixedState>, PathError> {
-        let forces: Vec<Sum> = force.iter().map(|force| Sum::exactly(*force)).collect();
-        let found = mixed.answer(z, &forces, self.watch).map_err(|_| PathError::Interrupted)?;
+        let found = mixed.answer(z, &|joint| force[joint], self.watch).map_err(|_| PathError::Interrupted)?;
         Ok(found.filter(|found| OnCone::new(problem).check(&found.z, &found.forces).passed))
     }
 }

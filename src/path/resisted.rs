@@ -18,7 +18,6 @@ use super::start::PathError;
 use crate::contact::cone::{ConeFailure, MixedProblem};
 use crate::contact::on_cone::{OnCone, cone_pairs};
 use crate::contact::problem::ContactProblem;
-use crate::contact::sum::Sum;
 use crate::contact::system::ContactSystem;
 use crate::watch::Watch;
 
@@ -70,9 +69,8 @@ pub(super) fn resisted<T>(
 fn step(problem: &ContactProblem, (z, force): &Place, c: f64, watch: &dyn Watch) -> Result<Option<Place>, PathError> {
     let eased = eased(problem, z, c);
     let found = if eased.system.force_form.is_some() {
-        let forces: Vec<Sum> = force.iter().map(|force| Sum::exactly(*force)).collect();
         let pairs = cone_pairs(&eased);
-        let found = MixedProblem::new(&eased, &pairs).answer(z, &forces, watch);
+        let found = MixedProblem::new(&eased, &pairs).answer(z, &|joint| force[joint], watch);
         found.map(|found| found.map(|state| (state.z, state.forces)))
     } else {
         OnCone::new(&eased).nearby(z, watch).map(|answer| Some((answer.z, answer.forces)))

@@ -63,17 +63,17 @@ impl<'a> MixedProblem<'a> {
         MixedProblem { problem, pairs, admitted, scale }
     }
 
-    /// The answer that is found from displacements and forces of all joints nearby; `None` where none is.
+    /// The answer that is found near displacements and, of joints in force form, forces; `None` where none is.
     ///
     /// # Errors
     /// Stopped from outside.
     pub fn answer(
         &self,
         z: &DVector<f64>,
-        forces: &[Sum],
+        force: &dyn Fn(usize) -> f64,
         watch: &dyn Watch,
     ) -> Result<Option<MixedState>, ConeFailure> {
-        let unknown = |joint: usize| if self.is_forced(joint) { forces[joint].value } else { z[joint] };
+        let unknown = |joint: usize| if self.is_forced(joint) { force(joint) } else { z[joint] };
         let start = DVector::from_fn(z.len(), |joint, _| unknown(joint));
         for factor in STIFFER {
             let scale = DVector::from_fn(z.len(), |joint, _| {
