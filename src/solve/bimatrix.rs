@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-
-use super::engines::run_scheme;
+use super::engines::{covered, run_scheme};
 use super::error::SolveError;
 use super::ladder::EXACT_BUDGET;
 use super::settle::settled;
+use crate::answer::attempt::PlainCovering;
 use crate::answer::check_plain::{ROW_ROUNDING, check_plain};
 use crate::lcp::basis::Basis;
 use crate::lcp::bimatrix::Bimatrix;
@@ -27,14 +25,11 @@ const COVERINGS: u64 = 8;
 /// Interrupted.
 pub(super) fn equilibrium(lcp: &MirroredLcp, watch: &dyn Watch) -> Result<Option<Vec<f64>>, SolveError> {
     let Some(game) = Bimatrix::of(lcp) else { return Ok(None) };
-    let with_values = MirroredLcp::plain(&game.with_values());
+    let with_values = Arc::new(MirroredLcp::plain(&game.with_values()));
     let mut last = None;
-    for seed in 0..=COVERINGS {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let covering = (0..with_values.size()).map(|_| if seed == 0 { 1.0 } else { random.random_range(0.5..2.0) });
-        let covered = MirroredLcp { covering: covering.collect::<Vec<f64>>().into(), ..with_values.clone() };
-        let rule = TieRule::Lexicographic((0..covered.size()).collect());
-        let run = run_scheme(&Arc::new(covered), rule, watch);
+    for covering in std::iter::once(PlainCovering::Ones).chain((1..=COVERINGS).map(PlainCovering::Random)) {
+        let rule = TieRule::Lexicographic((0..with_values.size()).collect());
+        let run = run_scheme(&covered(&with_values, covering), rule, watch);
         match run.outcome {
             Outcome::Normal { .. } => {}
             Outcome::Interrupted => return Err(SolveError::Interrupted),

@@ -6,7 +6,10 @@ use std::sync::Arc;
 
 use num_rational::BigRational;
 use num_traits::{One, Zero};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
+use crate::answer::attempt::PlainCovering;
 use crate::answer::record::OutcomeKind;
 use crate::contact::full_lcp::full_lcp_of;
 use crate::contact::problem::ContactProblem;
@@ -36,6 +39,25 @@ pub const EXACT_ROWS: usize = 400;
 
 /// No run makes more pivots than this; reaching it is an outcome of its own.
 pub const PIVOT_LIMIT: usize = 200_000;
+
+/// A bare LCP with this covering vector in place of its own.
+pub(super) fn covered(lcp: &Arc<MirroredLcp>, covering: PlainCovering) -> Arc<MirroredLcp> {
+    let n = lcp.size();
+    let row_size = |i: usize| {
+        let largest = lcp.base.row(i).amax();
+        if largest > 0.0 { largest } else { 1.0 }
+    };
+    let covering: Vec<f64> = match covering {
+        PlainCovering::Given => return Arc::clone(lcp),
+        PlainCovering::Ones => vec![1.0; n],
+        PlainCovering::Rows => (0..n).map(row_size).collect(),
+        PlainCovering::Random(seed) => {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            (0..n).map(|i| row_size(i) * f64::powf(2.0, random.random_range(-3.0..3.0))).collect()
+        }
+    };
+    Arc::new(MirroredLcp { covering: covering.into(), ..MirroredLcp::clone(lcp) })
+}
 
 /// Runs the working-scheme engine; the last vertex and a ray are computed afresh from the data where the equations
 /// of the last basis allow it.

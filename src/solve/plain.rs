@@ -3,11 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-
 use super::bimatrix::equilibrium;
-use super::engines::{EXACT_ROWS, run_exact_plain, run_scheme, run_tableau};
+use super::engines::{EXACT_ROWS, covered, run_exact_plain, run_scheme, run_tableau};
 use super::error::SolveError;
 use super::finish::{empty_answer, fail_check};
 use super::ladder::{EXACT_BUDGET, LAST_RESORT, Ladder, others};
@@ -103,26 +100,6 @@ impl<'a> PlainProblem<'a> {
     pub(super) fn rules(&self, rules: Rules) -> PlainRules {
         PlainRules { covering: self.covering, tie_break: rules.tie_break, engine: rules.engine }
     }
-
-    /// The LCP with this covering vector.
-    fn covered(&self, covering: PlainCovering) -> Arc<MirroredLcp> {
-        let lcp = &self.lcp;
-        let n = lcp.size();
-        let row_size = |i: usize| {
-            let largest = lcp.base.row(i).amax();
-            if largest > 0.0 { largest } else { 1.0 }
-        };
-        let covering: Vec<f64> = match covering {
-            PlainCovering::Given => return Arc::clone(lcp),
-            PlainCovering::Ones => vec![1.0; n],
-            PlainCovering::Rows => (0..n).map(row_size).collect(),
-            PlainCovering::Random(seed) => {
-                let mut random = ChaCha8Rng::seed_from_u64(seed);
-                (0..n).map(|i| row_size(i) * f64::powf(2.0, random.random_range(-3.0..3.0))).collect()
-            }
-        };
-        Arc::new(MirroredLcp { covering: covering.into(), ..MirroredLcp::clone(lcp) })
-    }
 }
 
 /// One run under exactly these rules.
@@ -131,7 +108,7 @@ pub(super) fn attempt_plain(
     rules: PlainRules,
     watch: &dyn Watch,
 ) -> Result<Solved, SolveError> {
-    let lcp = problem.covered(rules.covering);
+    let lcp = covered(&problem.lcp, rules.covering);
     let rule = match rules.tie_break {
         TieBreak::Lexicographic | TieBreak::Natural => TieRule::Lexicographic((0..lcp.size()).collect()),
         TieBreak::FirstRow => TieRule::FirstRow,
@@ -393,7 +370,7 @@ fn rungs(problem: &PlainProblem, first: &Solved, own: PlainRules) -> Vec<PlainRu
     coverings.extend((1..=RANDOM_COVERINGS).map(PlainCovering::Random));
     let mut rungs: Vec<PlainRules> = coverings.into_iter().map(|covering| PlainRules { covering, ..own }).collect();
     // The covering by rows may happen to be a multiple of d.
-    rungs.retain(|rules| !is_multiple(&problem.covered(rules.covering), &problem.lcp));
+    rungs.retain(|rules| !is_multiple(&covered(&problem.lcp, rules.covering), &problem.lcp));
     rungs.push(PlainRules { tie_break: TieBreak::Random(1), ..own });
     if problem.lcp.size() <= EXACT_ROWS {
         let exact = PlainRules { engine: Engine::Exact, ..own };
