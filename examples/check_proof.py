@@ -177,6 +177,10 @@ def pair(problem, law, normal, tangential):
     bound = [f * a for a in normal]
     bound[-1] += c
     ways, held_by_nothing = (plane if len(z_t) == 1 else space)(problem, name, bound, tangential, z_t)
+    if law == "bound" and not any(bound) and not any(any(row[:-1]) for row in tangential):
+        # it rolls, and no force feels how far
+        problem.zero |= set(z_t)
+        ways = {"stick": ways["stick"]}
     of = lambda word, on: {word + way: ({on} | zero, signs) for way, (zero, signs) in ways.items()}
     free = {"open": ({x_n} | held_by_nothing, {})}
     problem.groups[name] = of("", z_n) | ({} if law == "bound" else of("open ", x_n) if c else free)

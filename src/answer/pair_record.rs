@@ -24,7 +24,7 @@ pub enum State {
     /// Slips in space, in a direction of its own.
     #[serde(rename = "slip")]
     Slip,
-    /// A frictionless pair in contact.
+    /// A frictionless pair in contact, or a roller.
     #[serde(rename = "closed")]
     Closed,
 }

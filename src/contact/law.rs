@@ -56,6 +56,7 @@ impl PairLaw {
             Law::Coulomb { friction, cohesion, gap } => PairLaw::rubbing(value(friction), value(cohesion), value(gap)),
             Law::Frictionless { gap } => PairLaw::smooth(value(gap)),
             Law::Bound { bound } => PairLaw::bilateral(value(bound)),
+            Law::Roller => PairLaw { normal: NormalJoint::Bilateral, tangential: TangentialJoint::Free },
         }
     }
 
@@ -86,6 +87,11 @@ impl PairLaw {
     /// Whether the pair never opens.
     pub fn is_bilateral(&self) -> bool {
         self.normal == NormalJoint::Bilateral
+    }
+
+    /// Whether the pair never opens and slips freely.
+    pub fn is_roller(&self) -> bool {
+        self.is_bilateral() && self.tangential == TangentialJoint::Free
     }
 
     /// g, a length, < 0 for an interference; 0 where the pair never opens.

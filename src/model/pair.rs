@@ -63,7 +63,13 @@ pub enum Law {
         /// Friction bound r_f ≥ 0.
         bound: Number,
     },
+    /// Bilateral along n, free along t: what a known bound that is 0 and stays 0 comes to (see [`with_rollers`]). Files call
+    /// it by the bound.
+    Roller,
 }
+
+/// The bound of a roller.
+static NO_BOUND: Number = Number::Value(0.0);
 
 impl Law {
     /// The law without its numbers.
@@ -71,7 +77,7 @@ impl Law {
         match self {
             Law::Coulomb { .. } => LawKind::Coulomb,
             Law::Frictionless { .. } => LawKind::Frictionless,
-            Law::Bound { .. } => LawKind::Bound,
+            Law::Bound { .. } | Law::Roller => LawKind::Bound,
         }
     }
 
@@ -82,14 +88,14 @@ impl Law {
 
     /// Whether the main system has a joint along t.
     pub fn has_tangential_joint(&self) -> bool {
-        self.kind().has_tangential_joint()
+        self.kind().has_tangential_joint() && *self != Law::Roller
     }
 
     /// f, where the friction bound depends on x_n.
     pub fn friction(&self) -> Option<&Number> {
         match self {
             Law::Coulomb { friction, .. } => Some(friction),
-            Law::Frictionless { .. } | Law::Bound { .. } => None,
+            Law::Frictionless { .. } | Law::Bound { .. } | Law::Roller => None,
         }
     }
 
@@ -97,7 +103,7 @@ impl Law {
     pub fn gap(&self) -> Option<&Number> {
         match self {
             Law::Coulomb { gap, .. } | Law::Frictionless { gap } => Some(gap),
-            Law::Bound { .. } => None,
+            Law::Bound { .. } | Law::Roller => None,
         }
     }
 
@@ -109,6 +115,7 @@ impl Law {
             }
             Law::Frictionless { gap } => vec![("gap", gap)],
             Law::Bound { bound } => vec![("bound", bound)],
+            Law::Roller => vec![("bound", &NO_BOUND)],
         }
     }
 }
@@ -171,6 +178,16 @@ impl Pair {
     pub fn tangential_weights(&self) -> &[(usize, f64)] {
         if self.slides_on_ground { &self.weights[..1] } else { &self.weights }
     }
+}
+
+/// The pairs with a roller for each whose bound is 0 in the file, so that no setting can change it; `None` without such.
+///
+/// As a joint it would be held in the main system, to be let go in every answer: forces of what holds it would come into R
+/// that the structure does not have, and take digits from those that it has.
+pub fn with_rollers(pairs: &[Pair]) -> Option<Vec<Pair>> {
+    let rolls = |pair: &Pair| matches!(pair.law, Law::Bound { bound: Number::Value(0.0) });
+    let of = |pair: &Pair| Pair { law: if rolls(pair) { Law::Roller } else { pair.law.clone() }, ..pair.clone() };
+    pairs.iter().any(rolls).then(|| pairs.iter().map(of).collect())
 }
 
 /// Direction of a joint of a pair.

@@ -257,7 +257,8 @@ pub(super) fn fail_check(answer: &mut Answer) {
     answer.outcome = OutcomeKind::CheckFailed;
     let hidden = match answer.check.hidden {
         hidden if hidden > HIDDEN => format!(
-            "; its displacements are so large that rounding hides {hidden:.1e} of the loads: a motion that nothing resists"
+            "; its forces are differences of so much larger ones that rounding hides {hidden:.1e} of the loads: a motion that \
+             nothing resists, or parts far stiffer than what holds them"
         ),
         _ => String::new(),
     };

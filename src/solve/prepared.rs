@@ -17,7 +17,7 @@ use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::problem::Scale;
 use crate::model::joints::joint_numbers;
 use crate::model::load::at_values;
-use crate::model::pair::{Joint, JointDirection, joints};
+use crate::model::pair::{Joint, JointDirection, joints, with_rollers};
 use crate::model::parameter::{Number, ParameterValues};
 use crate::model::problem::{LISTED, Problems};
 use crate::model::scenario::{GivenLcp, Scenario, Source};
@@ -238,17 +238,38 @@ fn dependence(main: &MainSystem) -> Dependence<'_> {
     Dependence { independent: main.independent(), repeated, offsets: main.repeated_offsets() }
 }
 
+/// The main system, with rollers where pairs have no bound; where one is all that holds a part along its tangent, though not in
+/// an answer, all of them are joints: the loads need not push the part.
+fn main_system(
+    scenario: &Scenario,
+    structure: &Structure,
+    watch: &dyn Watch,
+) -> Result<(Structure, Vec<Joint>, MainSystem), PrepareError> {
+    let made = |structure: Structure| {
+        let joints = joints(&structure.pairs);
+        match MainSystem::new(&structure, &joints, watch) {
+            Ok(main) => Ok((structure, joints, main)),
+            Err(error) => Err(main_system_problem(scenario, &structure, error)),
+        }
+    };
+    if let Some(pairs) = with_rollers(&structure.pairs) {
+        match made(Structure { pairs, ..structure.clone() }) {
+            Err(PrepareError::Problems(_)) => {}
+            made => return made,
+        }
+    }
+    made(structure.clone())
+}
+
 fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Watch) -> Result<Prepared, PrepareError> {
-    let joints = joints(&structure.pairs);
-    let main =
-        MainSystem::new(structure, &joints, watch).map_err(|error| main_system_problem(scenario, structure, error))?;
+    let (structure, joints, main) = main_system(scenario, structure, watch)?;
     // The two tangential joints of a pair stand one after the other.
     let tangential = |pair: usize| {
         let of_pair = |joint: &Joint| joint.pair == pair && joint.direction != JointDirection::Normal;
         let first = joints.iter().position(of_pair).unwrap_or_default();
         first..first + joints.iter().filter(|joint| of_pair(joint)).count()
     };
-    let numbers = joint_numbers(structure);
+    let numbers = joint_numbers(&structure);
     let pairs = structure
         .pairs
         .iter()
@@ -262,7 +283,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
             tangential: tangential(i),
         })
         .collect();
-    let loads = joint_loads(structure, &main);
+    let loads = joint_loads(&structure, &main);
     let mut system = ContactSystem {
         pairs,
         tangents: structure.dimension.coordinates() - 1,
@@ -283,14 +304,11 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
         }
     }
     let seconds = main.timings();
+    let cases = structure.load_cases.iter().map(|case| (case.name.clone(), case.factor.clone())).collect();
     Ok(Prepared {
-        geometry: Arc::new(Geometry::Structure {
-            system: Arc::new(system),
-            main: Box::new(main),
-            structure: structure.clone(),
-        }),
+        geometry: Arc::new(Geometry::Structure { system: Arc::new(system), main: Box::new(main), structure }),
         values: ParameterValues::new(),
-        cases: structure.load_cases.iter().map(|case| (case.name.clone(), case.factor.clone())).collect(),
+        cases,
         factor_seconds: seconds.factor,
         condense_seconds: seconds.condense,
         seconds: 0.0,
@@ -330,7 +348,9 @@ impl Prepared {
     ) -> Result<Option<Prepared>, PrepareError> {
         let start = Instant::now();
         let geometry = match (&*self.geometry, &scenario.source) {
-            (Geometry::Structure { system, main, .. }, Source::Structure(structure)) => {
+            (Geometry::Structure { system, main, structure: before }, Source::Structure(structure)) => {
+                // The laws with the joints that they have in this main system.
+                let structure = &Structure { pairs: before.pairs.clone(), ..structure.clone() };
                 let main =
                     main.with_loads(structure).map_err(|error| main_system_problem(scenario, structure, error))?;
                 let loads = dependence(&main).loads(joint_loads(structure, &main));

@@ -39,7 +39,8 @@ fn pivots_word(count: usize) -> String {
 /// `2 stick 4 slip+ 0 open`: stick, slip and open always where there is friction, the others where they occur.
 pub fn state_counts(pairs: &[PairState]) -> String {
     let count = |state: State| pairs.iter().filter(|pair| pair.state == state).count();
-    let friction = pairs.iter().any(|pair| pair.law.has_tangential_joint());
+    // A roller has the law of a known bound and is closed.
+    let friction = pairs.iter().any(|pair| pair.law.has_tangential_joint() && pair.state != State::Closed);
     let unilateral = pairs.iter().any(|pair| !pair.law.is_bilateral());
     let (plus, minus, closed) = (count(State::SlipPlus), count(State::SlipMinus), count(State::Closed));
     let mut parts = Vec::new();

@@ -27,6 +27,7 @@ pub fn violation(scenario: &Scenario, values: &ParameterValues, answer: &Answer)
             Law::Coulomb { friction, cohesion, .. } => friction.value(values) * x_n + cohesion.value(values) / force,
             Law::Frictionless { .. } => 0.0,
             Law::Bound { bound } => bound.value(values) / force,
+            Law::Roller => 0.0,
         };
         at_most((pair.bound / force - bound).abs());
         if matches!(law, Law::Bound { .. }) {

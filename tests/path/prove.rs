@@ -240,6 +240,23 @@ fn a_set_of_answers_is_told_as_one() {
     assert!(checked(&[(alone, texts.1)]).remove(0).is_err());
 }
 
+/// A roller has no tangential joint: that the file leaves its slip free makes no further answers.
+#[test]
+fn the_answer_of_a_structure_on_rollers_is_the_only_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let spring = |node: &str, direction: [f64; 2]| json!({"at": node, "direction": direction, "stiffness": 8});
+    let scenario = json!({
+        "format": "stickslip/1", "title": "t", "nodes": {"A": [0, 0], "B": [1, 0]},
+        "springs": [spring("A", [1.0, 0.0]), spring("A", [0.0, 1.0]), spring("B", [1.0, 0.0]), spring("B", [0.0, 1.0])],
+        "contacts": [{"id": "r", "node": "A", "against": "ground", "normal": [3, 4], "law": "bound", "bound": 0},
+                     {"id": "c", "node": "A", "against": "B", "normal": [0, 1], "friction": 0.5}],
+        "loads": {"p": {"items": [{"point": {"at": "A", "force": [1, -2]}}]}}
+    });
+    let (_, texts) = proved(&mut of(&scenario).unwrap(), "all", folder.path()).unwrap();
+    let said = checked(std::slice::from_ref(&texts)).remove(0).unwrap();
+    assert!(said.contains("the number of answers is 1, and these are all"), "{said}");
+}
+
 /// Pairs whose tangential joints carry no force at all, or only one against another: with no load along them every slip
 /// is an answer, a whole line of them.
 #[test]

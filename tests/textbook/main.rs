@@ -32,6 +32,7 @@ mod repeated_joints;
 mod repeated_paths_in_space;
 mod rigid;
 mod rings;
+mod rollers;
 mod settlements;
 mod slope;
 mod space;

@@ -105,6 +105,7 @@ fn choices(pair: &ContactPair, polygon: Polygon, is_smooth: bool) -> Vec<PairSch
     });
     let slips = slips.map(|tangential| PairScheme { open: false, tangential });
     match pair.rubs() {
+        false if pair.law.is_bilateral() => vec![PairScheme::STICK],
         false => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
         true if pair.law.is_bilateral() => [PairScheme::STICK].into_iter().chain(slips).collect(),
         true => [PairScheme::STICK, PairScheme::OPEN].into_iter().chain(slips).collect(),

@@ -101,6 +101,7 @@ fn choices(law: &PairLaw, polygon: Polygon) -> Vec<PairScheme> {
         states.map(move |tangential| PairScheme { open, tangential })
     };
     match law.tangential {
+        TangentialJoint::Free if law.is_bilateral() => vec![PairScheme::STICK],
         TangentialJoint::Free => vec![PairScheme::STICK, PairScheme::OPEN_STICK],
         TangentialJoint::Bounded { .. } if law.is_bilateral() => all(false).collect(),
         TangentialJoint::Bounded { fixed, .. } if fixed > 0.0 => all(false).chain(all(true)).collect(),

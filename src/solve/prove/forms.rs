@@ -266,6 +266,11 @@ fn rubbing(
     };
     let mut all = of("", pair);
     if law.is_bilateral() {
+        // Without a bound and where no force feels its slip it rolls: that is no other state.
+        if law.fixed_bound() == 0.0 && tangential.iter().flat_map(|row| &row[..made.unknowns]).all(Zero::is_zero) {
+            made.zero.extend(slips);
+            all.truncate(1);
+        }
         return all;
     }
     if law.fixed_bound() > 0.0 {

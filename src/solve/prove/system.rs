@@ -4,7 +4,7 @@
 //!   contact   λ = R (z − (g, 0)) + load over all joints, 2m, in space 3m; where motions Z are given, R means Πᵀ R Π with Π Z = 0
 //!   LCP       w = M z + q
 //! ```
-//! A frictionless pair has λ_τ = 0, and z_τ = 0 where its row of R is zero.
+//! A frictionless pair has λ_τ = 0, and z_τ = 0 where its row of R is zero, as one of known bound 0 has.
 
 use std::ops::Range;
 
@@ -73,7 +73,9 @@ impl ProvedContact {
         let system = &*problem.system;
         let m = system.pair_count();
         let ids = system.pairs.iter().map(|pair| pair.id.clone()).collect();
-        let laws = problem.laws.clone();
+        // A roller has the law of its file, with nothing in its tangential rows.
+        let law = |law: &PairLaw| if law.is_roller() { PairLaw::bilateral(0.0) } else { *law };
+        let laws = problem.laws.iter().map(law).collect();
         let (tangents, polygon, cone) = (system.tangents, problem.polygon, problem.cone);
         if let (Some(file), Some(load), 0) = (&system.file, &problem.file_load, system.kernel.ncols())
             && !file.compliance
