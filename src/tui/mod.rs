@@ -26,6 +26,7 @@ pub mod pane;
 pub mod panes;
 pub mod pictures;
 pub mod prompt;
+pub mod rewrap;
 pub mod runtime;
 pub mod sequence;
 pub mod shown;

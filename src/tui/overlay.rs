@@ -12,6 +12,7 @@ use crate::view::style::Role;
 use super::answers::side_by_side;
 use super::app::{Overlay, State};
 use super::help;
+use super::rewrap;
 
 /// Width of the text of an overlay.
 pub fn text_width(state: &State) -> usize {
@@ -34,7 +35,14 @@ pub fn lines(state: &State) -> Rc<Vec<Line<'static>>> {
     match &state.overlay {
         Overlay::None => Rc::default(),
         Overlay::Help { .. } => Rc::new(help::lines(state, width)),
-        Overlay::Output { lines, .. } => Rc::clone(lines),
+        Overlay::Output { lines, .. } => {
+            // As wide as the frame leaves it: what was printed for this terminal stays as it is.
+            let room = usize::from(state.size.0).saturating_sub(4).max(1);
+            match lines.iter().all(|line| line.width() <= room) {
+                true => Rc::clone(lines),
+                false => Rc::new(rewrap::within(lines, room)),
+            }
+        }
         Overlay::Answers { answers, .. } => Rc::new(side_by_side(answers, state.look, width)),
     }
 }

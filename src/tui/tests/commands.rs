@@ -31,6 +31,27 @@ fn commands_run_in_the_same_session() {
     assert_eq!(rig.press(&["M"]), [Effect::Mouse(false)]);
 }
 
+/// What was printed for a wider terminal is there to the last word when that gets narrower.
+#[test]
+fn a_text_is_broken_anew_when_the_terminal_gets_narrower() {
+    for line in ["why c3", "set F2 to something that is no number at all, neither now nor at any later time of the day"]
+    {
+        let mut rig = Rig::new("beam", 120, 45);
+        rig.command(line);
+        let Overlay::Output { lines, .. } = &rig.state.overlay else { panic!("{line}") };
+        let widest = lines.iter().map(ratatui::text::Line::width).max().unwrap();
+        let words: Vec<String> =
+            lines.iter().flat_map(|line| line.to_string().split(' ').map(str::to_owned).collect::<Vec<_>>()).collect();
+        let narrow = 48;
+        assert!(widest > usize::from(narrow), "{line}: {widest}");
+        rig.act(Action::Resize(narrow, 45));
+        let screen = rig.screen();
+        for word in words {
+            assert!(screen.contains(&word), "{line}: {word} is not in\n{screen}");
+        }
+    }
+}
+
 #[test]
 fn auto_off_leaves_the_panes_empty_and_alive() {
     let mut rig = Rig::new("beam", 140, 45);

@@ -12,7 +12,6 @@ use crate::view::style::Role;
 use crate::tui::action::{Do, Job};
 use crate::tui::app::{Overlay, State};
 use crate::tui::bindings::Context;
-use crate::tui::overlay;
 
 /// Shows in several lines what a command printed, and keeps it.
 fn show(state: &mut State, title: String, lines: Vec<Line<'static>>) {
@@ -113,15 +112,8 @@ pub(super) fn tell(state: &mut State, job: &Job, text: &str, role: Role) {
         Job::Glance { .. } => "the cursor of the map".into(),
     };
     let style = state.look.role(role);
-    let report = state.look.report(overlay::text_width(state));
-    let lines = text
-        .lines()
-        .flat_map(|line| {
-            let wrapped = report.wrap(line, report.width);
-            if wrapped.is_empty() { vec![String::new()] } else { wrapped }
-        })
-        .map(|line| Line::styled(line, style))
-        .collect();
+    // Broken into lines of the window where it is drawn.
+    let lines = text.lines().map(|line| Line::styled(line.to_owned(), style)).collect();
     match job {
         Job::Line { text, .. } if loads(text) => say_loaded(state, &title, lines, role),
         _ => show(state, title, lines),
