@@ -21,7 +21,7 @@ fn hanging(text: &str) -> Option<usize> {
     let body = text.trim_start();
     let indent = text.width() - body.width();
     let mut parts = body.trim_end().split("  ").filter(|part| !part.is_empty());
-    let (first, second, third) = (parts.next()?, parts.next(), parts.next());
+    let (second, third) = (parts.nth(1), parts.next());
     if third.is_some() || body.chars().any(|c| DRAWN.contains(&c)) {
         return None;
     }
