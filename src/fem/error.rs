@@ -18,8 +18,11 @@ pub enum MainSystemError {
     OverConstrained(Vec<OverConstraint>),
     /// The structure moves freely although every joint is on.
     #[error(
-        "the structure is a mechanism whatever its contacts do: node {node_id} is free to move {}; \
-         add a support, a tie, a bar or a spring that holds it",
+        "the structure is a mechanism whatever its contacts do: {} {}; add a support, a tie, a bar or a spring that holds it",
+        match .body {
+            Some(body) => format!("{body} is free to move, its node {node_id}"),
+            None => format!("node {node_id} is free to move"),
+        },
         .direction
     )]
     Mechanism {
@@ -27,6 +30,8 @@ pub enum MainSystemError {
         node: usize,
         /// Its id.
         node_id: String,
+        /// The plate, brick or mesh that it is a node of.
+        body: Option<String>,
         /// How it moves.
         direction: FreeDirection,
     },
@@ -57,6 +62,17 @@ pub enum MainSystemError {
         node: usize,
         /// The stiffest element, in words.
         stiffest: String,
+    },
+    /// Sides so short beside the whole that the digits do not tell whether they hold anything.
+    #[error(
+        "whether the structure stands cannot be told: the shortest side of its elements is {share:.0e} of the size of the whole, and \
+         what it holds is lost in the digits of the numbers; use elements of better shape, or leave the short ones out"
+    )]
+    Lost {
+        /// A node that moves.
+        node: usize,
+        /// Shortest side over the size of the structure.
+        share: f64,
     },
     /// The factorization met NaN or infinity.
     #[error("the stiffness matrix is not finite: check the sizes, materials and stiffnesses of the model")]

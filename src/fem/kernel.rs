@@ -6,7 +6,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::error::{FreeDirection, MainSystemError};
-use super::loose::Motion;
+use super::loose::{Motion, shortest_side};
 use crate::model::pair::Joint;
 use crate::model::structure::Structure;
 use crate::model::vector::length;
@@ -82,8 +82,14 @@ fn add_scaled(sum: &mut [[f64; 6]], factor: f64, u: &[[f64; 6]]) {
     }
 }
 
-/// The error that names the node that moves most.
+/// The error that names the node that moves most. Where some side is no more than rounding beside the whole, what it holds
+/// cannot be told from what nothing holds.
 pub fn mechanism(structure: &Structure, u: &[[f64; 6]]) -> MainSystemError {
+    let size = structure.extent().into_iter().fold(0.0, f64::max);
+    let share = shortest_side(structure) / size;
+    if share <= UNFELT {
+        return MainSystemError::Lost { node: most_moved(u), share };
+    }
     // What a turn moves by no more than the rounding of the places does not move.
     let farthest = structure.nodes.iter().map(|node| length(node.position)).fold(0.0, f64::max);
     let turn = u.iter().map(|&[.., x, y, z]| length([x, y, z])).fold(0.0, f64::max);
@@ -96,8 +102,20 @@ pub fn mechanism(structure: &Structure, u: &[[f64; 6]]) -> MainSystemError {
     MainSystemError::Mechanism {
         node,
         node_id: structure.nodes[node].id.clone(),
+        body: body_of(structure, node),
         direction: FreeDirection::of(structure.dimension, u[node]),
     }
+}
+
+/// The plate, brick, mesh or part of a mesh to which a node belongs.
+fn body_of(structure: &Structure, node: usize) -> Option<String> {
+    let has = |element: &usize| {
+        let nodes = &structure.elements[*element].nodes;
+        nodes.len() > 2 && nodes.contains(&node)
+    };
+    let contains = |name: &&str| structure.elements_of_body(name).is_some_and(|elements| elements.iter().any(has));
+    // The parts of a mesh come last.
+    structure.bodies().into_iter().rfind(contains).map(str::to_owned)
 }
 
 /// The node with the largest translation, or rotation where nothing translates.

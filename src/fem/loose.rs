@@ -71,7 +71,7 @@ impl LooseMotions {
 }
 
 /// Least distance of two nodes of an element.
-fn shortest_side(structure: &Structure) -> f64 {
+pub fn shortest_side(structure: &Structure) -> f64 {
     let place = |node: usize| structure.nodes[node].position;
     let of_element = |nodes: &Vec<usize>| {
         let pairs = nodes.iter().enumerate().flat_map(|(i, a)| nodes[..i].iter().map(move |b| [*a, *b]));

@@ -19,12 +19,23 @@ pub enum GridLines {
     Graded(Vec<f64>),
 }
 
+/// Share of its distance from the origin of the coordinates below which a side has no place left in their digits.
+pub const HIDDEN_SIDE: f64 = 1e-12;
+
 impl GridLines {
     /// Number of lines.
     pub fn count(&self) -> usize {
         match self {
             GridLines::Uniform { divisions, .. } => divisions + 1,
             GridLines::Graded(lines) => lines.len(),
+        }
+    }
+
+    /// Least distance between two of them.
+    pub fn least_part(&self) -> f64 {
+        match self {
+            GridLines::Uniform { size, divisions } => size / *divisions as f64,
+            GridLines::Graded(lines) => lines.windows(2).map(|two| two[1] - two[0]).fold(f64::INFINITY, f64::min),
         }
     }
 

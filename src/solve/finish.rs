@@ -258,7 +258,7 @@ pub(super) fn fail_check(answer: &mut Answer) {
     let hidden = match answer.check.hidden {
         hidden if hidden > HIDDEN => format!(
             "; its forces are differences of so much larger ones that rounding hides {hidden:.1e} of the loads: a motion that \
-             nothing resists, or parts far stiffer than what holds them"
+             nothing resists, or stiffnesses too far apart (parts far stiffer than what holds them, a Poisson's ratio next to 0.5)"
         ),
         _ => String::new(),
     };

@@ -193,6 +193,7 @@ pub(super) fn main_system_problem(scenario: &Scenario, structure: &Structure, er
             return problems_at(scenario, bodies.iter().map(|body| (place(body.body), body.to_string())));
         }
         MainSystemError::Mechanism { node: at, .. }
+        | MainSystemError::Lost { node: at, .. }
         | MainSystemError::Contrast { node: at, .. }
         | MainSystemError::Slender { node: at, .. } => node(*at),
         MainSystemError::Indefinite { .. } => "superelement.stiffness.file".to_owned(),

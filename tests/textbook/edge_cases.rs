@@ -155,3 +155,18 @@ fn the_same_pair_order_and_units_of_the_report() {
         near("x⁺ − x⁻", pair.reserve_plus - pair.reserve_minus, 2.0 * pair.x_t, 1e-12, 100.0);
     }
 }
+
+/// A plate in plane strain whose bulk stiffness is 1/(1 − 2ν) = 5e10 of its shear stiffness: the digits that are left do not
+/// show the loads, and what is said of it names the material beside a motion.
+#[test]
+fn a_material_next_to_incompressible_is_not_told_as_a_motion_alone() {
+    let answer = Case::json(json!({
+        "materials": { "s": { "E": 1, "nu": 0.49999999999 } },
+        "plates": [{ "id": "u", "origin": [0, 0], "size": [1, 1], "divisions": [2, 2], "thickness": 1, "material": "s", "plane": "strain" }],
+        "contacts": [{ "id": "j", "edge": "u.bottom", "against": "ground", "friction": 0.5 }],
+        "loads": { "w": { "items": [{ "point": { "at": "u.top", "force": [0.2, -1] } }] } }
+    }))
+    .solve(&[]);
+    let said = answer.failure.expect("rounding hides the loads");
+    assert!(said.contains("stiffnesses too far apart") && said.contains("Poisson's ratio next to 0.5"), "{said}");
+}

@@ -239,6 +239,26 @@ fn ground_on_the_wrong_side() {
     assert!(found.iter().all(|of| !of.message.contains("lies above")), "{found:?}");
 }
 
+/// Two elements of a kind on the same nodes, in whatever order these are written; a truss beside a beam is none.
+#[test]
+fn elements_given_twice() {
+    let bar = |id: &str, nodes: [&str; 2], kind: &str| {
+        ("/bars/-", json!({ "id": id, "nodes": nodes, "kind": kind, "material": "steel", "section": "HEA400" }))
+    };
+    let first = bar("first", ["A", "C"], "frame");
+    only(
+        &with(beam(), &[first.clone(), bar("again", ["C", "A"], "frame")]),
+        "bars[2]",
+        &["`again` has the nodes of `first`"],
+    );
+    none(&with(beam(), &[first, bar("cable", ["C", "A"], "truss")]));
+    let quad = |id: &str, nodes: [&str; 4]| json!({ "id": id, "nodes": nodes, "thickness": 1, "material": "concrete", "plane": "stress" });
+    let corners = ["block[0,0]", "block[4,0]", "block[4,2]", "block[0,2]"];
+    let turned = ["block[4,0]", "block[4,2]", "block[0,2]", "block[0,0]"];
+    let quads = [("/quads", json!([quad("p", corners), quad("q", turned)]))];
+    only(&with(block(), &quads), "quads[1]", &["`q` has the nodes of `p`", "both count"]);
+}
+
 /// The same nodes and the same normal once more: as a second contact, with its sides exchanged, on a face. Faces that
 /// meet in a node and the two sides of a guide are none.
 #[test]

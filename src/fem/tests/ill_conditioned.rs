@@ -122,19 +122,35 @@ fn contrast_beyond_all_precision() {
     assert!(text.contains("bar b") && text.contains("the spring at g"), "{text}");
 }
 
+/// The refusal of a plate of this size under these contacts.
+fn plate_refused(size: &str, contacts: &str) -> MainSystemError {
+    let text = r#"{"format":"stickslip/1","title":"t","materials":{"s":{"E":1,"nu":0.2}},
+"plates":[{"id":"u","origin":[0,0],"size":SIZE,"divisions":[2,2],"thickness":1,"material":"s","plane":"stress"}],
+"contacts":[CONTACTS],"loads":{"w":{"items":[{"point":{"at":"u.top","force":[0.2,-1]}}]}}}"#;
+    let scenario = load_text("plate", &text.replace("SIZE", size).replace("CONTACTS", contacts), None).unwrap();
+    let Source::Structure(structure) = scenario.source else { panic!("a structure") };
+    MainSystem::new(&structure, &joints(&structure.pairs), &Quiet).err().unwrap()
+}
+
 /// A plate a million long and a millionth wide bends by (10¹²)³ times what its elements give: no contrast between parts, and
-/// told as what it is.
+/// told as what it is. At 10⁸ and 10⁻⁸ its foot does not feel that it turns, in 16 digits: no mechanism all the same.
 #[test]
 fn elements_without_measure_are_told() {
-    let text = r#"{"format":"stickslip/1","title":"t","materials":{"s":{"E":1,"nu":0.2}},
-"plates":[{"id":"u","origin":[0,0],"size":[1e-6,1e6],"divisions":[2,2],"thickness":1,"material":"s","plane":"stress"}],
-"contacts":[{"id":"j","edge":"u.bottom","against":"ground","friction":0.5}],
-"loads":{"w":{"items":[{"point":{"at":"u.top","force":[0,-1]}}]}}}"#;
-    let scenario = load_text("plate", text, None).unwrap();
-    let Source::Structure(structure) = scenario.source else { panic!("a structure") };
-    let error = MainSystem::new(&structure, &joints(&structure.pairs), &Quiet).err().unwrap();
+    let foot = r#"{"id":"j","edge":"u.bottom","against":"ground","friction":0.5}"#;
+    let error = plate_refused("[1e-6,1e6]", foot);
     assert!(matches!(error, MainSystemError::Slender { .. }), "{error}");
     assert!(error.to_string().contains("too long and thin"), "{error}");
+    let error = plate_refused("[1e-8,1e8]", foot);
+    assert!(matches!(error, MainSystemError::Lost { share: 5e-17, .. }), "{error:?}");
+    assert!(error.to_string().contains("the shortest side of its elements is 5e-17 of"), "{error}");
+}
+
+/// A plate that nothing holds is told by its name, not as one of its nodes alone.
+#[test]
+fn a_plate_that_is_free_is_named() {
+    let error =
+        plate_refused("[2,1]", r#"{"id":"j","node":"u[1,0]","against":"ground","normal":[0,1],"friction":0.5}"#);
+    assert!(error.to_string().contains(": u is free to move, its node u["), "{error}");
 }
 
 /// Mechanisms whose coordinates are rounded: a chain of bars hinged end to end along a line at any angle, far from

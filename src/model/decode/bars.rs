@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::builder::{Bending, Builder, Section, id_of, material_of};
 use super::reader::{Cursor, Fields};
 use crate::model::bar_axes::{AxesFault, BarAxes};
+use crate::model::grid::HIDDEN_SIDE;
 use crate::model::space_section::EndJoint;
 use crate::model::structure::{Bar, Dimension, Element, ElementKind};
 use crate::model::vector::distance;
@@ -200,7 +201,7 @@ pub fn divide<'d>(builder: &mut Builder<'d>, bar: BarOutline<'d>, place: &Arc<st
         let length = distance(from, to);
         let size = from.iter().chain(&to).fold(0.0_f64, |size, x| size.max(x.abs()));
         // Written so that an unknown place (NaN, reported at the node) passes.
-        if ends[0] == ends[1] || length <= 1e-12 * size {
+        if ends[0] == ends[1] || length <= HIDDEN_SIDE * size {
             let part = if nodes.len() == 2 { "" } else { "a segment of " };
             let at = builder.structure.dimension.in_words(from);
             let (what, help) = if ends[0] == ends[1] || length == 0.0 {

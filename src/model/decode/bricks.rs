@@ -1,7 +1,7 @@
 //! Bricks: boxes of hexahedra in space.
 
 use super::builder::{Builder, id_of, material_of};
-use super::plates::modes;
+use super::plates::{modes, near_enough};
 use super::reader::{Cursor, Fields};
 use crate::model::brick::BrickGrid;
 
@@ -45,11 +45,14 @@ fn grid<'d>(builder: &Builder<'d>, fields: &Fields<'d>, id: Option<&'d str>) -> 
     });
     let material = solid_material(builder, fields);
     let incompatible = modes(fields);
+    let (lengths, counts) = (size?, divisions?);
+    let sides = [0, 1, 2].map(|axis| lengths[axis] / counts[axis] as f64);
+    near_enough(fields, &origin?, sides.into_iter().fold(f64::INFINITY, f64::min))?;
     Some(BrickGrid {
         id: id?.to_owned(),
         origin: origin?,
-        size: size?,
-        divisions: divisions?,
+        size: lengths,
+        divisions: counts,
         material: material?,
         incompatible: incompatible?,
     })

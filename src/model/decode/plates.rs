@@ -2,8 +2,9 @@
 
 use super::builder::{Builder, id_of, material_of};
 use super::reader::{Cursor, Fields};
-use crate::model::grid::{GridLines, PlateGrid};
+use crate::model::grid::{GridLines, HIDDEN_SIDE, PlateGrid};
 use crate::model::structure::Plane;
+use crate::text::number::short;
 
 /// Reads one plate.
 pub fn plate<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<PlateGrid> {
@@ -46,6 +47,7 @@ fn plate_grid<'d>(builder: &Builder<'d>, fields: &Fields<'d>, id: Option<&'d str
     let common = membrane(builder, fields);
     let incompatible = modes(fields);
     let [x, y] = lines?;
+    near_enough(fields, &origin?, x.least_part().min(y.least_part()))?;
     let (thickness, material, plane) = common?;
     Some(PlateGrid {
         id: id?.to_string(),
@@ -58,6 +60,19 @@ fn plate_grid<'d>(builder: &Builder<'d>, fields: &Fields<'d>, id: Option<&'d str
         incompatible: incompatible?,
         material,
     })
+}
+
+/// Reports a grid whose shortest side is lost in the digits of coordinates as large as those of its origin.
+pub fn near_enough(fields: &Fields<'_>, origin: &[f64], side: f64) -> Option<()> {
+    let away = origin.iter().fold(0.0_f64, |away, x| away.max(x.abs()));
+    if side > HIDDEN_SIDE * away {
+        return Some(());
+    }
+    fields.required("origin")?.problem(
+        format!("sides of its elements are only {} long, 1e-12 of its distance from the origin or less", short(side)),
+        "put the origin of the coordinates near the structure",
+    );
+    None
 }
 
 /// Whether elements of four nodes have incompatible modes: the key `element`.

@@ -200,6 +200,22 @@ fn abaqus() {
     assert!(mesh.skipped.contains(&"*ELASTIC".to_owned()) && !mesh.skipped.contains(&"*HEADING".to_owned()));
 }
 
+/// A set that is begun once more goes on; a surface has its name alone.
+#[test]
+fn sets_in_parts_are_one_set_and_surfaces_are_not() {
+    let inp = "*NODE, NSET=N\n1, 0, 0\n2, 1, 0\n*NODE, NSET=N\n3, 1, 1\n4, 0, 1\n\
+        *ELEMENT, TYPE=CPS4\n1, 1, 2, 3, 4\n*NSET, NSET=foot\n1\n*NSET, NSET=other\n4\n*NSET, NSET=Foot\n2\n";
+    let mesh = read_abaqus(inp.as_bytes(), "a.inp", None).unwrap_or_else(|problems| panic!("{problems:?}"));
+    let foot = mesh.groups_named("foot").next().unwrap();
+    let edge = Boundary::of(&mesh).edge(foot).unwrap();
+    assert_eq!(ids(&mesh, &edge.nodes), [1, 2]);
+    assert_eq!(mesh.notes, ["1 node set is written in parts, which are put together, the first at a.inp:13: \"foot\""]);
+    let twice = format!("{inp}*SURFACE, NAME=top\n1, S3\n*SURFACE, NAME=TOP\n1, S2\n");
+    let problems = read_abaqus(twice.as_bytes(), "a.inp", None).unwrap_err();
+    assert!(problems[0].message.contains("duplicate surface \"TOP\", first at a.inp:15"), "{problems:?}");
+    assert_eq!(problems[0].line, 17);
+}
+
 #[test]
 fn lines_in_pieces_and_inside_are_no_edge() {
     let apart = MSH2.replace("3 1 2 7 1 10 20", "3 1 2 7 1 40 50");

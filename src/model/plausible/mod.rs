@@ -1,5 +1,5 @@
 //! What is allowed and yet hardly meant: materials no one builds with under the named units, parts that nothing uses,
-//! loads that load nothing, ground inside a body, contacts given twice. Warnings, never errors: an odd model is still the author's.
+//! loads that load nothing, ground inside a body, contacts and elements given twice. Warnings, never errors: an odd model is still the author's.
 
 mod loads;
 pub mod normals;
@@ -54,6 +54,7 @@ pub fn warnings(scenario: &Scenario) -> Vec<Warning> {
             warnings.extend(normals::upside_down(scenario, structure));
             warnings.extend(overlaps::of_contacts(scenario, structure));
             warnings.extend(twins::of_contacts(scenario, structure));
+            warnings.extend(twins::of_elements(scenario, structure));
             warnings.extend(loads::of_structure(scenario, structure, file));
         }
     }
@@ -77,7 +78,8 @@ fn contacts(scenario: &Scenario) -> impl Iterator<Item = Range<usize>> + '_ {
 pub fn said_at_load(scenario: &Scenario) -> Vec<String> {
     let Source::Structure(structure) = &scenario.source else { return Vec::new() };
     let told = |Warning { path, message, help }: Warning| format!("{path}: {message}: {help}");
-    twins::of_contacts(scenario, structure).into_iter().map(told).collect()
+    let contacts = twins::of_contacts(scenario, structure);
+    contacts.into_iter().chain(twins::of_elements(scenario, structure)).map(told).collect()
 }
 
 /// The warnings in the order of the file, each with its place.

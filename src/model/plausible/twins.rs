@@ -1,11 +1,14 @@
-//! Contacts given twice: the same nodes and the same normal once more.
+//! What is given twice: contacts with the same nodes and the same normal once more, elements of a kind with the same nodes.
 
 use std::collections::HashMap;
+use std::mem::discriminant;
 
 use super::{Warning, contacts};
+use crate::model::locate::Document;
 use crate::model::pair::Pair;
 use crate::model::scenario::Scenario;
 use crate::model::structure::Structure;
+use crate::model::tree::Node;
 
 /// Weights and directions carry rounding.
 const ALIKE: f64 = 1e-9;
@@ -42,6 +45,46 @@ pub fn of_contacts(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
         own.for_each(|i| seen.entry(nodes(&pairs[i])).or_default().push(i));
     }
     warnings
+}
+
+/// Bars, triangles and quads of the file that have the nodes of another one of their kind; those of meshes are told where
+/// these are read.
+pub fn of_elements(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
+    let named = structure.named_elements.iter().map(|(id, element)| (id.as_str(), *element));
+    let bars = structure.bars.iter().flat_map(|bar| bar.elements.clone().map(|element| (bar.id.as_str(), element)));
+    let mut seen = HashMap::new();
+    let mut twins: Vec<[&str; 2]> = Vec::new();
+    for (id, index) in bars.chain(named) {
+        let element = &structure.elements[index];
+        let mut nodes = element.nodes.clone();
+        nodes.sort_unstable();
+        let first = *seen.entry((discriminant(&element.kind), nodes)).or_insert(id);
+        if first != id && !twins.contains(&[first, id]) {
+            twins.push([first, id]);
+        }
+    }
+    if twins.is_empty() {
+        return Vec::new();
+    }
+    let Ok(document) = Document::parse(&scenario.text) else { return Vec::new() };
+    let told = |[first, id]: [&str; 2]| {
+        Warning::new(
+            place(document.root(), id),
+            format!("`{id}` has the nodes of `{first}`: both count, in stiffness and in weight"),
+            "remove one of them; if there are two, one of twice the thickness or section says so",
+        )
+    };
+    twins.into_iter().map(told).collect()
+}
+
+/// The place of an element with an id of its own.
+fn place(file: Node<'_>, id: &str) -> String {
+    let of = |key: &'static str| {
+        let mut items = file.get(key).into_iter().flat_map(Node::items);
+        let at = items.position(|item| item.get("id").and_then(Node::as_str) == Some(id))?;
+        Some(format!("{key}[{at}]"))
+    };
+    ["bars", "triangles", "quads"].into_iter().find_map(of).unwrap_or_default()
 }
 
 /// The nodes of a pair in order.

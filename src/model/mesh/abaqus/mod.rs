@@ -86,6 +86,7 @@ pub fn read(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<RawMesh, 
     }
     reader.end_of_data()?;
     reader.mesh.files.clone_from(&reader.cards.files);
+    reader.note_merged();
     reader.groups()?;
     Ok(reader.mesh)
 }
@@ -165,18 +166,26 @@ impl Reader<'_> {
                 Mode::Elements { kind, set: keyword.value("ELSET").map(|name| self.element_sets.open(name, place)) }
             }
             "NSET" => {
-                let set = self.node_sets.open(named("NSET")?, place);
+                let set = self.node_sets.begin(named("NSET")?, place);
                 if let Some(elements) = keyword.value("ELSET") {
                     self.node_sets.push_elements(set, elements, place);
                 }
                 Mode::NodeSet { set, generate: keyword.has("GENERATE") }
             }
             "ELSET" => {
-                let set = self.element_sets.open(named("ELSET")?, place);
+                let set = self.element_sets.begin(named("ELSET")?, place);
                 Mode::ElementSet { set, generate: keyword.has("GENERATE") }
             }
             "SURFACE" => match Surface::begin(keyword, &self.cards)? {
                 Ok(surface) => {
+                    let same = |known: &&Surface| known.name.eq_ignore_ascii_case(&surface.name);
+                    if let Some(first) = self.surfaces.iter().find(same) {
+                        let first = self.mesh.first_at(first.place);
+                        return refused(
+                            &format!("duplicate surface {}{first}", quoted(&surface.name)),
+                            "give each a name of its own; COMBINE=UNION puts surfaces together",
+                        );
+                    }
                     self.surfaces.push(surface);
                     Mode::Surface { surface: self.surfaces.len() - 1 }
                 }
@@ -333,6 +342,18 @@ impl Reader<'_> {
             self.element_sets.push(set, tag, place);
         }
         Ok(())
+    }
+
+    /// Notes the sets that are written in parts.
+    fn note_merged(&mut self) {
+        for (sets, what) in [(&self.node_sets, "node set"), (&self.element_sets, "element set")] {
+            let Some((name, place, count)) = sets.merged() else { continue };
+            let what = match count {
+                1 => format!("1 {what} is written in parts, which are put together"),
+                _ => format!("{count} {what}s are written in parts, which are put together"),
+            };
+            self.mesh.notes.push(format!("{what}, the first at {}: {}", self.mesh.line_of(place), quoted(name)));
+        }
     }
 
     /// Sets and surfaces as groups.

@@ -27,6 +27,8 @@ struct Set {
     name: String,
     place: Place,
     entries: Vec<Entry>,
+    /// Where it was begun by its own keyword, first and once more.
+    begun: [Option<Place>; 2],
 }
 
 /// All sets of a kind, in the order of the file.
@@ -62,9 +64,27 @@ impl Sets {
         let name = unquoted(name);
         let all = &mut self.all;
         *self.by_name.entry(name.to_uppercase()).or_insert_with(|| {
-            all.push(Set { name: name.to_owned(), place, entries: Vec::new() });
+            all.push(Set { name: name.to_owned(), place, entries: Vec::new(), begun: [None; 2] });
             all.len() - 1
         })
+    }
+
+    /// The set that a keyword of its own begins or goes on with: what follows is added to it.
+    pub fn begin(&mut self, name: &str, place: Place) -> usize {
+        let set = self.open(name, place);
+        let [first, again] = &mut self.all[set].begun;
+        match first {
+            None => *first = Some(place),
+            Some(_) => *again = again.or(Some(place)),
+        }
+        set
+    }
+
+    /// Name and place of the first set that was begun twice, and how many there are.
+    pub fn merged(&self) -> Option<(&str, Place, usize)> {
+        let mut merged = self.all.iter().filter_map(|set| Some((set.name.as_str(), set.begun[1]?)));
+        let (name, place) = merged.next()?;
+        Some((name, place, 1 + merged.count()))
     }
 
     /// Name and place of every set.
