@@ -109,6 +109,11 @@ impl PairState {
         Some(angle(space.z_t))
     }
 
+    /// Size of its slip, a length ≥ 0: of a pair in contact, for what an open one moves by along t is no slip.
+    pub fn slip_size(&self) -> f64 {
+        if self.state == State::Open { 0.0 } else { self.z_t.abs() }
+    }
+
     /// bound − |x_t|, a force.
     pub fn reserve(&self) -> f64 {
         reserve(self.bound, -self.x_t.abs())

@@ -61,6 +61,9 @@ pub fn write_help(word: &str, style: &Style, out: &mut dyn Write) -> Result<u8, 
 /// anywhere else.
 pub fn hint(arguments: &[OsString]) -> Option<String> {
     let first = printable::line(&arguments.get(1)?.to_string_lossy());
+    if arguments.iter().any(|word| word == "--json") && is_of_the_shell(&first) {
+        return Some("`--json` is no option: `--format json` is, of solve, replay, sweep and check".to_owned());
+    }
     hint_of(&first).or_else(|| {
         let second = arguments.get(2).map(|word| printable::line(&word.to_string_lossy()))?;
         if first.starts_with('-') || second.starts_with('-') || is_of_the_shell(&first) {

@@ -129,6 +129,11 @@ impl ContactSystem {
         self.pairs.len()
     }
 
+    /// Number of pairs that can be in more than one state: all but rollers.
+    pub fn turning_pairs(&self) -> usize {
+        self.pairs.iter().filter(|pair| pair.law != Law::Roller).count()
+    }
+
     /// Number k of joints.
     pub fn joint_count(&self) -> usize {
         self.stiffness.nrows()

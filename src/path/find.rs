@@ -1,5 +1,5 @@
 //! Where a quantity fulfils a condition over a parameter: on an exact path every place, elsewhere brackets between
-//! answers of their own.
+//! runs of their own.
 
 use super::profile::{ROUNDING, Shape, number, profile, zero};
 use super::quantity::{Facts, Value, history_for};
@@ -260,7 +260,7 @@ fn on_grid(
     let mut found = gather(&parts, wanted, place);
     found.notes.push(format!(
         "no exact path leads over {name} here: {} values were solved one by one, and each change between two of them \
-         was narrowed to a bracket with an answer on either side; what comes and goes between two of them is not seen",
+         was narrowed to a bracket between two more; what comes and goes between two of them is not seen",
         CELLS + 1
     ));
     if parts.iter().any(|part| part.side.is_none()) {

@@ -285,7 +285,7 @@ pub(super) fn fields(answer: &Answer) -> Vec<Value> {
     let in_space = answer.pairs.iter().any(|pair| pair.space.is_some());
     let sense = |state: State| if in_space { Value::Null } else { count(state) };
     // A size, as in the line of the status: its sign says the sense, not which slip is larger.
-    let [slip, slip_pair] = largest(&|k| answer.pairs[k].z_t.abs());
+    let [slip, slip_pair] = largest(&|k| answer.pairs[k].slip_size());
     let [gap, gap_pair] = largest(&|k| answer.pairs[k].z_n);
     let [force, force_pair] = largest(&|k| answer.pairs[k].x_n);
     vec![

@@ -102,7 +102,7 @@ impl Prepared {
         if let Some(refusal) = system.dependence_refusal("enumerate", instead) {
             return Err(QuestionError::Refused(refusal));
         }
-        too_many("contact pairs", system.pair_count(), MOST_PAIRS)?;
+        too_many("contact pairs", system.turning_pairs(), MOST_PAIRS)?;
         let problem = contact_problem(system, &factors(self, values), values).under(Rules { cone: false, ..rules });
         let facets = system.is_in_space().then(|| problem.polygon.facets());
         let mut steps = 0u64;

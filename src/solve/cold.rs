@@ -250,7 +250,7 @@ fn run_engine(
             {
                 return Err(SolveError::Value(refusal));
             }
-            let found = system.pairs.len();
+            let found = system.turning_pairs();
             if found > EXACT_PAIRS {
                 return Err(SolveError::TooLargeForExact { what: "contact pairs", found, most: EXACT_PAIRS });
             }

@@ -33,7 +33,9 @@ impl Prepared {
             return;
         }
         // Only figures of the size of rounding are worth the proof.
-        if solved.answer.pairs.len() > EXACT_PAIRS || !solved.answer.check.is_within(EXCUSABLE) {
+        if self.system().is_none_or(|system| system.turning_pairs() > EXACT_PAIRS)
+            || !solved.answer.check.is_within(EXCUSABLE)
+        {
             return;
         }
         let budget = Budget::new(watch, EXACT_BUDGET);

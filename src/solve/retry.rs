@@ -157,7 +157,7 @@ impl Job<'_> {
     /// Other rules, then the path from zero load, then all working schemes; the first answer wins. Without one the run
     /// under the default rules is shown, with what was proved.
     fn retry(&self, mut first: Solved) -> Result<Solved, SolveError> {
-        let m = self.problem.system.pairs.len();
+        let m = self.problem.system.turning_pairs();
         let class = first.ray.as_ref().map(|report| report.class);
         // A proof that there is none saves all further attempts.
         let budget = Budget::new(self.watch, EXACT_BUDGET);

@@ -32,7 +32,7 @@ pub fn exact(value: f64) -> String {
 }
 
 fn max_slip(pairs: &[PairState]) -> f64 {
-    largest(pairs.iter().map(|pair| pair.z_t))
+    largest(pairs.iter().map(PairState::slip_size))
 }
 
 fn breakpoints(

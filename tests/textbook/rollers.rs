@@ -103,6 +103,10 @@ fn a_turned_footing_has_as_many_answers_as_it_had() {
     let straight = found(None);
     assert_eq!(straight.0, 1);
     assert_eq!(found(Some(0.5)), straight);
+    // Rollers do not count where a search is bounded by the number of pairs.
+    let turned = Case::text(&footing(31, Some(0.5)));
+    let system = turned.prepared.system().expect("pairs");
+    assert_eq!((system.pair_count(), system.turning_pairs()), (31 + 32, 31));
 }
 
 /// A cantilever along x whose tip is held by a roller with the normal n:

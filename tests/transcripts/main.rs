@@ -29,6 +29,7 @@ mod surroundings;
 mod system_limits;
 mod tables;
 mod tour;
+mod true_words;
 mod tui_pty;
 mod watch_pty;
 mod work;

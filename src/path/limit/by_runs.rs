@@ -1,11 +1,15 @@
 //! The limit of a load in space: no path leads there, since slips turn; runs of their own bracket it, each with an
 //! answer on Coulomb's cone or a collapse that is certified on it.
 
+use nalgebra::DVector;
+
 use super::record::{Limit, beside, size};
+use crate::contact::sum::LAW_ROUNDING;
 use crate::path::edge::{Bracket, CLOSE, Run, narrowed};
 use crate::path::load_parameter::LoadParameter;
 use crate::path::start::PathError;
-use crate::solve::Case;
+use crate::solve::problem::factors;
+use crate::solve::{Case, Prepared};
 
 /// Each increase of the load is this many times the one before it …
 const GROWTH: f64 = 4.0;
@@ -61,21 +65,52 @@ pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathErr
         lost: false,
     };
     let Some(collapse) = collapse else { return Ok(limit) };
-    let Bracket { answer, none: collapse, proof } = narrowed(&run, answer, collapse, true)?;
-    limit.last = answer.value;
-    limit.bracket = Some([answer.value, collapse.value]);
-    limit.proof = proof.map(|proof| proof.value);
+    // A load that is rounding beside the others is none: what has no answer at twice that has the limit 0.
+    let least = outwards * least_felt(case, grown_or_own, &parameter);
+    let (mut answer, mut is_none) = (answer, false);
+    if least != 0.0 && answer.value.abs() <= least.abs() && collapse.value.abs() > 2.0 * least.abs() {
+        let near = run(2.0 * least)?;
+        is_none = !near.is_answer();
+        if is_none {
+            limit.bracket = Some([0.0, near.value]);
+            limit.proof = (collapse.is_proved() && !near.is_proved()).then_some(collapse.value);
+        } else {
+            answer = near;
+        }
+    }
+    let (answer, collapse) = if is_none {
+        limit.last = 0.0;
+        (0.0, collapse)
+    } else {
+        let Bracket { answer, none, proof } = narrowed(&run, answer, collapse, true)?;
+        limit.last = answer.value;
+        limit.bracket = Some([answer.value, none.value]);
+        limit.proof = proof.map(|proof| proof.value);
+        (answer.value, none)
+    };
     let (prepared, _) = there(collapse.value)?;
     let found = Case { prepared: &prepared, ..case }.solve()?.answer.ray;
-    if (answer.value - collapse.value).abs() > CLOSE * size(collapse.value, present) {
+    if !is_none && (answer - collapse.value).abs() > CLOSE * size(collapse.value, present) {
         limit.collapse = found;
         return Ok(limit);
     }
-    limit.factor = Some(answer.value);
-    limit.safety = (present != 0.0).then(|| answer.value / present);
+    limit.factor = Some(answer);
+    limit.safety = (present != 0.0).then(|| answer / present);
     limit.confirmed = collapse.is_proved();
     if let Some(found) = found {
         limit.put_collapse(found);
     }
     Ok(limit)
+}
+
+/// The size of the load up to which it is no more than rounding beside the others: by so much the law of each joint may be
+/// violated in an answer, which then is one without the load.
+fn least_felt(case: Case<'_>, prepared: &Prepared, parameter: &LoadParameter) -> f64 {
+    let Some(system) = prepared.system() else { return 0.0 };
+    let mut others = factors(prepared, case.values);
+    parameter.drive(&mut others, 0.0);
+    let size = |load: &DVector<f64>| system.forces_of(load).amax();
+    let beside: f64 = others.iter().zip(&system.loads).map(|(factor, load)| factor.abs() * size(&load.vector)).sum();
+    let own = size(&parameter.direction(system));
+    if own > 0.0 { system.joint_count() as f64 * LAW_ROUNDING * beside / own } else { 0.0 }
 }

@@ -200,15 +200,18 @@ fn friction_bends(Case { prepared, values, .. }: Case<'_>, name: &str) -> bool {
     })
 }
 
-/// A, B, …, Z, AA, …
+/// The letters of the first regions, one each.
+const LETTERS: &[u8; 52] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+
+/// A, B, …, Z, a, …, z, AA, AB, …
 fn letters(mut index: usize) -> String {
     let mut word = String::new();
     loop {
-        word.insert(0, char::from(b'A' + (index % 26) as u8));
-        if index < 26 {
+        word.insert(0, char::from(LETTERS[index % LETTERS.len()]));
+        if index < LETTERS.len() {
             return word;
         }
-        index = index / 26 - 1;
+        index = index / LETTERS.len() - 1;
     }
 }
 
@@ -346,7 +349,7 @@ impl Map {
             ),
             _ => format!("other answers were not looked for along the lines{counted}"),
         });
-        if self.regions.len() > 26 {
+        if self.regions.len() > LETTERS.len() {
             self.notes.push("where a letter is two, the picture shows its last".to_owned());
         }
         if self.regions.iter().any(Region::has_several) {

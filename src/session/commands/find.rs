@@ -23,7 +23,7 @@ use crate::session::{CommandError, Next, Output, Session, worker};
 /// `find NAME [A..B] where QUANTITY < | = | > VALUE` (or `QUANTITY WORD`) tells every interval and place in the range,
 /// which is that of the slider if it is left out. Where an exact path leads over NAME (loads, friction) they are exact
 /// and in order, in space found along Coulomb's cone in steps; elsewhere (geometry, stiffness) they are brackets
-/// between answers of their own. `find least|most NAME [A..B] where outcome answer` brackets the first value with an
+/// between runs of their own. `find least|most NAME [A..B] where outcome answer` brackets the first value with an
 /// answer between a checked answer and a proved collapse; with another condition it is the first or the last place at
 /// which that holds.
 #[derive(Debug, Args)]

@@ -6,6 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::answer::record::Ray;
+use crate::model::parameter::Number;
 use crate::path::limit;
 use crate::path::load_parameter::known;
 use crate::path::record::PathRecord;
@@ -109,6 +110,10 @@ impl Session {
             None => self.ground(io.watch)?,
         };
         let cases = case_names(&ground.prepared);
+        let is_idle = |(case, factor): &(String, Number)| case == name && *factor == Number::Value(0.0);
+        if ground.prepared.cases.iter().any(is_idle) {
+            io.remark(&format!("the factor of {name} is 0 in the file: by itself the case never acts"))?;
+        }
         let what = name.to_owned();
         let found = worker::run(io.watch, move |watch| limit::limit(ground.case(watch), Some(&ground.solved), &what))?;
         let found = found.map_err(|error| match error {

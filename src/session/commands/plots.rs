@@ -84,7 +84,7 @@ pub struct Plot {
     height: Option<u16>,
     /// Bar, for moment, shear, axial, Vz, T and My (all of them without one); quantity, pairs and `over CASE`, for path;
     /// `loads on|off` and `scale FACTOR|auto`, for structure and mode
-    #[arg(value_name = "OF")]
+    #[arg(value_name = "OF", allow_negative_numbers = true)]
     of: Vec<String>,
 }
 

@@ -105,11 +105,11 @@ impl Session {
             let Some(system) = shown.system() else {
                 return refused("answers are enumerated for contact problems, this is a bare LCP");
             };
-            if system.pair_count() > MOST_PAIRS {
+            if system.turning_pairs() > MOST_PAIRS {
                 return refused(format!(
                     "{} contact pairs are too many for all answers side by side: at most {MOST_PAIRS}; `enumerate` goes on \
                      until it is stopped",
-                    system.pair_count()
+                    system.turning_pairs()
                 ));
             }
             let found = shown.all_answers(&values, rules, watch)?;

@@ -60,6 +60,11 @@ pub fn parse(text: &str) -> Result<Option<Parsed>, GrammarError> {
     }
     match command.read(&words) {
         Ok(action) => Ok(Some(Parsed { command, action })),
+        Err(_) if words.iter().any(|word| word == "--json") => Err(GrammarError::Arguments(format!(
+            "{}: `--json` is no option: `export result FILE.json` writes the answer, and `stickslip replay --format json` tells \
+             all commands so",
+            command.name
+        ))),
         Err(error) => Err(GrammarError::Arguments(one_paragraph(&error, command.name))),
     }
 }
@@ -75,6 +80,10 @@ fn one_paragraph(error: &clap::Error, name: &str) -> String {
         }
         if line.starts_with("Usage:") {
             break;
+        }
+        // Clap's own advice for what is no option is to write it behind `--`, which no command here is helped by.
+        if line.starts_with("tip: to pass '") {
+            continue;
         }
         parts.push(line.trim_start_matches("error: ").trim_start_matches("tip: "));
     }

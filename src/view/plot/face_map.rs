@@ -227,12 +227,13 @@ impl FaceMap {
         };
         // a pair has a sign of its own where its cell is wide enough to show its level too
         let has_signs = columns as f64 * self.spacing.0 >= 3.0 * (right - left);
+        let border = self.border();
         for row in 0..rows {
             let y = at((rows - row) as f64 - 0.5, rows, [bottom, top]);
             let mut cells: Vec<(char, Role)> = vec![(' ', Role::Plain)];
             for column in 0..columns {
                 let x = at(column as f64 + 0.5, columns, [left, right]);
-                cells.push(self.nearest((x, y)).map_or((' ', Role::Plain), |spot| {
+                cells.push(self.nearest((x, y), &border).map_or((' ', Role::Plain), |spot| {
                     if has_signs && cell(spot) == (column, row) {
                         return (pair_sign(spot.state, spot.towards, style.ascii), Role::State(spot.state));
                     }
@@ -271,14 +272,58 @@ impl FaceMap {
         words.join(", ")
     }
 
-    /// The pair nearest to a place, if one is near.
-    fn nearest(&self, (x, y): (f64, f64)) -> Option<&Spot> {
+    /// The pair nearest to a place, if one is near and the face reaches there.
+    fn nearest(&self, (x, y): (f64, f64), border: &[(f64, f64)]) -> Option<&Spot> {
         let (dx, dy) = self.spacing;
         let away = |spot: &Spot| ((spot.at.0 - x) / dx).hypot((spot.at.1 - y) / dy);
         let nearest = self.spots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
         // the corner of a cell is √½ away
-        (away(nearest) <= 1.0).then_some(nearest)
+        let is_near = away(nearest) <= 1.0;
+        let cell = ((nearest.at.0 - x) / dx).abs().max(((nearest.at.1 - y) / dy).abs());
+        (is_near && (cell <= 0.5 || reaches(border, (x / dx, y / dy)))).then_some(nearest)
     }
+
+    /// The border of the pairs, counter-clockwise around all of them, in spacings.
+    fn border(&self) -> Vec<(f64, f64)> {
+        let mut places: Vec<(f64, f64)> =
+            self.spots.iter().map(|spot| (spot.at.0 / self.spacing.0, spot.at.1 / self.spacing.1)).collect();
+        places.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let half = |places: &mut dyn Iterator<Item = &(f64, f64)>| {
+            let mut half: Vec<(f64, f64)> = Vec::new();
+            for &next in places {
+                while let [.., a, b] = half[..] {
+                    if turn(a, b, next) > 0.0 {
+                        break;
+                    }
+                    half.pop();
+                }
+                half.push(next);
+            }
+            half.pop();
+            half
+        };
+        let mut border = half(&mut places.iter());
+        border.extend(half(&mut places.iter().rev()));
+        border
+    }
+}
+
+/// > 0 where the way from a over b to c turns left: twice the area of the triangle.
+fn turn(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> f64 {
+    (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
+}
+
+/// Whether a place lies within a border, or no more than half a spacing outside.
+fn reaches(border: &[(f64, f64)], place: (f64, f64)) -> bool {
+    let sides = || border.iter().zip(border.iter().cycle().skip(1));
+    let is_inside = sides().all(|(&a, &b)| turn(a, b, place) >= 0.0);
+    let away = |(&a, &b): (&(f64, f64), &(f64, f64))| {
+        let (side, way) = ((b.0 - a.0, b.1 - a.1), (place.0 - a.0, place.1 - a.1));
+        let square = side.0 * side.0 + side.1 * side.1;
+        let share = ((side.0 * way.0 + side.1 * way.1) / square).clamp(0.0, 1.0);
+        (way.0 - share * side.0).hypot(way.1 - share * side.1)
+    };
+    is_inside || sides().any(|side| away(side) <= 0.5)
 }
 
 /// Unit vector along a slip.
@@ -348,6 +393,22 @@ mod tests {
         let mut bent = structure.clone();
         bent.pairs[0].node = bent.nodes.len() - 1;
         assert!(faces(&bent, &states, Quantity::Slip, &units()).0.is_empty());
+    }
+
+    /// Pairs on one half of a square are drawn as the triangle that they are: each row ends a cell before the one below it.
+    #[test]
+    fn a_triangle_is_a_triangle() {
+        let structure = block([6, 6, 1], [6.0, 6.0, 1.0]);
+        let states = block_states(&structure);
+        let (maps, _) = faces(&structure, &states, Quantity::Slip, &units());
+        let mut map = maps[0].clone();
+        map.spots.retain(|spot| spot.at.0 + spot.at.1 <= 6.0 + 1e-9);
+        let mut out = Vec::new();
+        map.write(&mut out, 7, &Style { width: 16, ascii: true, ..Style::default() }).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        let lengths: Vec<usize> = text.lines().skip(1).take(7).map(|line| line.trim().len()).collect();
+        assert_eq!(lengths.len(), 7);
+        assert!(lengths.is_sorted() && lengths[0] <= 4 && lengths[6] >= 12, "{lengths:?}\n{text}");
     }
 
     #[test]

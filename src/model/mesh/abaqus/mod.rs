@@ -176,24 +176,7 @@ impl Reader<'_> {
                 let set = self.element_sets.begin(named("ELSET")?, place);
                 Mode::ElementSet { set, generate: keyword.has("GENERATE") }
             }
-            "SURFACE" => match Surface::begin(keyword, &self.cards)? {
-                Ok(surface) => {
-                    let same = |known: &&Surface| known.name.eq_ignore_ascii_case(&surface.name);
-                    if let Some(first) = self.surfaces.iter().find(same) {
-                        let first = self.mesh.first_at(first.place);
-                        return refused(
-                            &format!("duplicate surface {}{first}", quoted(&surface.name)),
-                            "give each a name of its own; COMBINE=UNION puts surfaces together",
-                        );
-                    }
-                    self.surfaces.push(surface);
-                    Mode::Surface { surface: self.surfaces.len() - 1 }
-                }
-                Err(other) => {
-                    self.leave_alone(other);
-                    Mode::Skip
-                }
-            },
+            "SURFACE" => self.begin_surface(keyword)?,
             "INCLUDE" => {
                 let file = named("INPUT")?.to_owned();
                 // Data lines before and after it belong together only within what it includes.
@@ -247,6 +230,25 @@ impl Reader<'_> {
             Some(file) => self.cards.include(file, place),
             None => Ok(()),
         }
+    }
+
+    fn begin_surface(&mut self, keyword: &Keyword) -> Result<Mode, MeshProblem> {
+        let surface = match Surface::begin(keyword, &self.cards)? {
+            Ok(surface) => surface,
+            Err(other) => {
+                self.leave_alone(other);
+                return Ok(Mode::Skip);
+            }
+        };
+        if let Some(first) = self.surfaces.iter().find(|known| known.name.eq_ignore_ascii_case(&surface.name)) {
+            return Err(self.cards.problem(
+                surface.place,
+                format!("duplicate surface {}{}", quoted(&surface.name), self.mesh.first_at(first.place)),
+                "give each a name of its own; COMBINE=UNION puts surfaces together",
+            ));
+        }
+        self.surfaces.push(surface);
+        Ok(Mode::Surface { surface: self.surfaces.len() - 1 })
     }
 
     fn data(&mut self, fields: &[String], goes_on: bool, place: Place) -> Result<(), MeshProblem> {
