@@ -252,6 +252,8 @@ fn elements_given_twice() {
         &["`again` has the nodes of `first`"],
     );
     none(&with(beam(), &[first, bar("cable", ["C", "A"], "truss")]));
+    let back = [("/bars/0/polyline", json!(["A", "B", "C", "B"])), ("/bars/0/divisions", json!(1))];
+    only(&with(beam(), &back), "bars[0]", &["`beam` has two elements with the same nodes"]);
     let quad = |id: &str, nodes: [&str; 4]| json!({ "id": id, "nodes": nodes, "thickness": 1, "material": "concrete", "plane": "stress" });
     let corners = ["block[0,0]", "block[4,0]", "block[4,2]", "block[0,2]"];
     let turned = ["block[4,0]", "block[4,2]", "block[0,2]", "block[0,0]"];

@@ -47,8 +47,8 @@ pub fn of_contacts(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
     warnings
 }
 
-/// Bars, triangles and quads of the file that have the nodes of another one of their kind; those of meshes are told where
-/// these are read.
+/// Bars, triangles and quads that have the nodes of another one of their kind; areas and solids of meshes are told where these
+/// are read.
 pub fn of_elements(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
     let named = structure.named_elements.iter().map(|(id, element)| (id.as_str(), *element));
     let bars = structure.bars.iter().flat_map(|bar| bar.elements.clone().map(|element| (bar.id.as_str(), element)));
@@ -58,8 +58,8 @@ pub fn of_elements(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
         let element = &structure.elements[index];
         let mut nodes = element.nodes.clone();
         nodes.sort_unstable();
-        let first = *seen.entry((discriminant(&element.kind), nodes)).or_insert(id);
-        if first != id && !twins.contains(&[first, id]) {
+        let (first, at) = *seen.entry((discriminant(&element.kind), nodes)).or_insert((id, index));
+        if at != index && !twins.contains(&[first, id]) {
             twins.push([first, id]);
         }
     }
@@ -68,23 +68,31 @@ pub fn of_elements(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
     }
     let Ok(document) = Document::parse(&scenario.text) else { return Vec::new() };
     let told = |[first, id]: [&str; 2]| {
+        let what = match first == id {
+            true => format!("`{id}` has two elements with the same nodes"),
+            false => format!("`{id}` has the nodes of `{first}`"),
+        };
         Warning::new(
             place(document.root(), id),
-            format!("`{id}` has the nodes of `{first}`: both count, in stiffness and in weight"),
+            format!("{what}: both count, in stiffness and in weight"),
             "remove one of them; if there are two, one of twice the thickness or section says so",
         )
     };
     twins.into_iter().map(told).collect()
 }
 
-/// The place of an element with an id of its own.
+/// The place of an element with an id of its own, or of the mesh whose bars bear its name.
 fn place(file: Node<'_>, id: &str) -> String {
-    let of = |key: &'static str| {
+    let mesh = id.split(['.', '#']).next();
+    let of = |(key, id): (&'static str, Option<&str>)| {
         let mut items = file.get(key).into_iter().flat_map(Node::items);
-        let at = items.position(|item| item.get("id").and_then(Node::as_str) == Some(id))?;
+        let at = items.position(|item| item.get("id").and_then(Node::as_str) == id)?;
         Some(format!("{key}[{at}]"))
     };
-    ["bars", "triangles", "quads"].into_iter().find_map(of).unwrap_or_default()
+    [("bars", Some(id)), ("triangles", Some(id)), ("quads", Some(id)), ("meshes", mesh)]
+        .into_iter()
+        .find_map(of)
+        .unwrap_or_default()
 }
 
 /// The nodes of a pair in order.
