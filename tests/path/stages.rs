@@ -257,3 +257,32 @@ fn what_was_followed_before_a_breakdown_stands() {
     assert_eq!(told(&broken), ("breakdown".into(), error.to_string().into(), Some(2)));
     assert_eq!(broken.outcome().map(|answer| answer.pairs.clone()), whole.answer().map(|answer| answer.pairs.clone()));
 }
+
+/// A block of 1000, f = 0.1, on a spring k = 1000: −300 draws it 0.2 to where f N = 100 and the spring hold; pressed by 2000 and
+/// let go, the spring's 200 is all that friction can take. It stands exactly at its limit and does not move, at whatever angle
+/// the numbers round.
+#[test]
+fn what_comes_to_its_limit_at_the_end_of_a_stage_has_not_slipped() {
+    for degrees in 0..90 {
+        let (sin, cos) = (f64::from(degrees) * 4.1).to_radians().sin_cos();
+        let text = serde_json::json!({
+            "format": "stickslip/1", "title": "isolator", "nodes": { "m": [0, 0] },
+            "springs": [{ "at": "m", "direction": [cos, sin], "stiffness": 1000 }],
+            "contacts": [{ "id": "s", "node": "m", "against": "ground", "normal": [-sin, cos], "friction": 0.1 }],
+            "loads": { "w": { "factor": 1000, "items": [{ "point": { "at": "m", "force": [sin, -cos] } }] },
+                       "h": { "items": [{ "point": { "at": "m", "force": [cos, sin] } }] } },
+            "stages": [{ "w": 1 }, { "w": 1, "h": -300 }, { "w": 2, "h": -300 }, { "w": 2 }]
+        });
+        let scenario = load_text("isolator", &text.to_string(), None).expect("a sound scenario");
+        let prepared = prepare(&scenario, &Quiet).expect("sound");
+        let values = scenario.parameter_values();
+        let history = follow(prepared.case(&scenario, &values)).expect("a history");
+        let last = &history.stages[3];
+        let pair = &last.end.pairs[0];
+        assert_eq!(pair.state.word(), "stick", "{degrees}");
+        close(pair.x_t, -200.0, 200.0);
+        close(pair.z_t, -0.2, 0.2);
+        let changes = last.moments.iter().map(|moment| moment.changes.len()).sum::<usize>();
+        assert_eq!(changes, 0, "{degrees}");
+    }
+}

@@ -104,7 +104,8 @@ impl<'a> Walk<'a> {
             Ended::Breakdown(why) => return Err(breakdown(t, &why)),
         };
         let (step, mut now) = next_event(self.place.laws, &self.standing, &rates, sizes);
-        let to = if step >= 1.0 - t { 1.0 } else { t + step };
+        // What is reached at the end but for rounding is reached at the end: there is no way left on which it turns.
+        let to = if step >= 1.0 - t - NOISE { 1.0 } else { t + step };
         if step > 1.0 - t {
             now.clear();
         }
