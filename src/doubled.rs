@@ -120,6 +120,7 @@ mod tests {
     use num_rational::BigRational;
     use proptest::prelude::*;
     use stickslip_numerics::doubled as vectors;
+    use stickslip_numerics::products::{halved_sums, roundings};
 
     use super::*;
 
@@ -164,6 +165,33 @@ mod tests {
             let mut added = a.clone();
             vectors::add_multiple(&mut added, factor, &b);
             prop_assert!(numbers.iter().zip(added).all(|((a, b), added)| added == *a + factor * *b));
+        }
+    }
+
+    proptest! {
+        /// Sums by halves lose at most what they say, against rationals: terms cancel, every length of a last run.
+        #[test]
+        fn sums_by_halves_lose_what_they_say(
+            numbers in prop::collection::vec((-1.0_f64..1.0, -1.0_f64..1.0, -30_i32..30), 1..300), cancels: bool,
+        ) {
+            let (mut a, mut b): (Vec<f64>, Vec<f64>) =
+                numbers.iter().map(|(a, b, scale)| (a * f64::from(*scale).exp2(), *b)).unzip();
+            if cancels {
+                let negative: Vec<f64> = a.iter().map(|a| -a * (1.0 + 1e-15)).collect();
+                (a.extend(negative), b.extend(b.clone()));
+            }
+            let (sum, magnitude) = halved_sums(&a, &b);
+            let rational = |x: f64| BigRational::from_float(x).unwrap();
+            let terms = || a.iter().zip(&b).map(|(a, b)| rational(*a) * rational(*b));
+            let (right, size) = terms().fold((rational(0.0), rational(0.0)), |(sum, size), term| {
+                let absolute = if term < rational(0.0) { -term.clone() } else { term.clone() };
+                (sum + term, size + absolute)
+            });
+            // first order in ε, so a thousandth more
+            let bound = rational(1.001 * roundings(a.len()) * f64::EPSILON / 2.0) * &size;
+            for error in [rational(sum) - right, rational(magnitude) - size] {
+                prop_assert!(error <= bound && -error <= bound);
+            }
         }
     }
 

@@ -120,3 +120,41 @@ impl Split {
         (product, error)
     }
 }
+
+/// Terms that are summed in eight lanes, one after another.
+const RUN: usize = 64;
+
+/// Σ a_i b_i and Σ |a_i b_i| in f64, halves of the terms summed by themselves: how many roundings a term meets at
+/// most, [`roundings`] says.
+pub fn halved_sums(a: &[f64], b: &[f64]) -> (f64, f64) {
+    if a.len() > RUN {
+        let middle = a.len().div_ceil(2);
+        let (first, second) = (halved_sums(&a[..middle], &b[..middle]), halved_sums(&a[middle..], &b[middle..]));
+        return (first.0 + second.0, first.1 + second.1);
+    }
+    let (mut sum, mut magnitude) = ([0.0; 8], [0.0; 8]);
+    let mut eights = a.chunks_exact(8).zip(b.chunks_exact(8));
+    for (a, b) in &mut eights {
+        for lane in 0..8 {
+            let term = a[lane] * b[lane];
+            sum[lane] += term;
+            magnitude[lane] += term.abs();
+        }
+    }
+    let left = a.len() - a.len() % 8;
+    for (lane, (a, b)) in a[left..].iter().zip(&b[left..]).enumerate() {
+        sum[lane] += a * b;
+        magnitude[lane] += (a * b).abs();
+    }
+    let all = |lanes: [f64; 8]| {
+        ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5])) + ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]))
+    };
+    (all(sum), all(magnitude))
+}
+
+/// Roundings that a term of [`halved_sums`] of n terms meets at most: its product, the sums of its lane, of the eight
+/// lanes and of the halves. The error of the sum is at most so many times ε/2 Σ |a_i b_i|, if no product underflows.
+pub fn roundings(n: usize) -> f64 {
+    let halves = n.div_ceil(RUN).next_power_of_two().ilog2();
+    f64::from(1 + (RUN as u32 / 8 + 1) + 3 + halves)
+}

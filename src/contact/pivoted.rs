@@ -10,7 +10,7 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::doubled::{dot, sum_of_products};
-use stickslip_numerics::products::subtract_square;
+use stickslip_numerics::products::{halved_sums, roundings, subtract_square};
 
 /// A row of A z below this share of its terms is zero by the digits of A.
 const DIGITS: f64 = 64.0 * f64::EPSILON;
@@ -129,31 +129,31 @@ impl PivotedCholesky {
     }
 
     /// The vector with 1 / scale at `k`, 0 at the other dependent rows, that A takes to zero in all independent rows;
-    /// and whether it is null.
+    /// and whether it is null. Refined until it is, twice at most.
     fn candidate(&self, matrix: &DMatrix<f64>, k: usize) -> (DVector<f64>, bool) {
         let own = 1.0 / self.scale[k];
         let mut z = DVector::zeros(self.order.len());
         z[k] = own;
         // A z, exact: `own` is a power of two.
         let mut residual = matrix.column(k) * own;
-        // The first step solves, the others refine.
-        for step in 0..3 {
-            if step > 0 {
-                for &row in self.independent() {
-                    residual[row] = dot(0.0, matrix.column(row).iter().zip(z.iter()));
-                }
+        z -= self.solve(&residual);
+        for _ in 0..2 {
+            for &row in self.independent() {
+                residual[row] = dot(0.0, matrix.column(row).iter().zip(z.iter()));
             }
             z -= self.solve(&residual);
+            // An entry that should be 0 holds rounding, and may be the only term of some row.
+            let size = |i: usize| z[i].abs() * self.scale[i];
+            let largest = (0..z.len()).map(size).fold(0.0, f64::max);
+            let simple = DVector::from_fn(z.len(), |i, _| if size(i) <= f64::EPSILON * largest { 0.0 } else { z[i] });
+            if is_null(matrix, &simple) {
+                return (simple, true);
+            }
+            if simple != z && is_null(matrix, &z) {
+                return (z, true);
+            }
         }
-        // An entry that should be 0 holds rounding, and may be the only term of some row.
-        let size = |z: &DVector<f64>, i: usize| z[i].abs() * self.scale[i];
-        let largest = (0..z.len()).map(|i| size(&z, i)).fold(0.0, f64::max);
-        let simple = DVector::from_fn(z.len(), |i, _| if size(&z, i) <= f64::EPSILON * largest { 0.0 } else { z[i] });
-        if is_null(matrix, &simple) {
-            return (simple, true);
-        }
-        let null = simple != z && is_null(matrix, &z);
-        (z, null)
+        (z, false)
     }
 }
 
@@ -212,7 +212,17 @@ fn finish_panel(l: &mut DMatrix<f64>, from: usize, to: usize) {
 
 /// Whether A z = 0 by the digits of A, row by row.
 pub fn is_null(matrix: &DMatrix<f64>, z: &DVector<f64>) -> bool {
-    matrix.column_iter().all(|row| {
+    // Smaller terms may have lost digits to underflow.
+    const SMALLEST: f64 = 1e-270;
+    // What rounding can have made of the f64 sums below, and as much again for that of their magnitude.
+    let doubt = roundings(z.len()) * f64::EPSILON;
+    (0..matrix.ncols()).all(|row| {
+        let row = matrix.column(row);
+        let (sum, magnitude) = halved_sums(row.as_slice(), z.as_slice());
+        let beyond = sum.abs() - DIGITS * magnitude;
+        if magnitude.is_finite() && magnitude > SMALLEST && beyond.abs() > doubt * magnitude {
+            return beyond < 0.0;
+        }
         let sum = sum_of_products(0.0, row.iter().zip(z.iter()));
         sum.value().abs() <= DIGITS * sum.magnitude()
     })

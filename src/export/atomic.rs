@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 
 use crate::text::file::reason;
 
+/// Writes what is to stand in a file: in a box, so that what follows is compiled once and not for each kind of content.
+type Content<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
+
 /// A file that could not be written; the old one, if there was one, is untouched.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write {}: {}; {}", path.display(), reason(source), left(path))]
@@ -28,7 +31,7 @@ fn left(path: &Path) -> &'static str {
 /// # Errors
 /// Whatever the system or `content` says; then `path` is as it was.
 pub fn write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
-    replace(path, content).map_err(|source| WriteError { path: path.to_owned(), source })
+    replace(path, Box::new(content)).map_err(|source| WriteError { path: path.to_owned(), source })
 }
 
 /// Writes a new file in the same way; one that is there already stays as it is.
@@ -39,7 +42,7 @@ pub fn create(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()
     let there = |_| CreateError::There(path.to_owned());
     fs::symlink_metadata(path).map_or(Ok(()), |metadata| Err(there(metadata)))?;
     let failed = |source| CreateError::Failed { path: path.to_owned(), source };
-    let file = written(path, content, None).map_err(failed)?;
+    let file = written(path, Box::new(content), None).map_err(failed)?;
     // it may have come meanwhile
     file.persist_noclobber(path).map(drop).map_err(|error| match error.error.kind() {
         io::ErrorKind::AlreadyExists => CreateError::There(path.to_owned()),
@@ -93,7 +96,7 @@ fn target(path: &Path) -> io::Result<PathBuf> {
     fs::canonicalize(path)
 }
 
-fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+fn replace(path: &Path, content: Content<'_>) -> io::Result<()> {
     let target = target(path)?;
     let before = match fs::metadata(&target) {
         Ok(metadata) if metadata.is_file() => Some(metadata.permissions()),
@@ -113,7 +116,7 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
 /// The content in a temporary file beside `target`, with `permissions`, on the disk.
 fn written(
     target: &Path,
-    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    content: Content<'_>,
     permissions: Option<fs::Permissions>,
 ) -> io::Result<tempfile::NamedTempFile> {
     let folder = match target.parent() {

@@ -67,6 +67,26 @@ pub fn run_patiently<T: Send + 'static>(
     patience: Duration,
     job: impl FnOnce(&dyn Watch) -> T + Send + 'static,
 ) -> Result<T, WorkerError> {
+    let result = Arc::new(Mutex::new(None));
+    let theirs = Arc::clone(&result);
+    run_boxed(
+        watch,
+        patience,
+        Box::new(move |watch| {
+            let found = job(watch);
+            *theirs.lock().unwrap_or_else(PoisonError::into_inner) = Some(found);
+        }),
+    )?;
+    let found = result.lock().unwrap_or_else(PoisonError::into_inner).take();
+    found.ok_or_else(|| WorkerError::Panicked("it left no result".to_owned()))
+}
+
+/// As [`run_patiently`]; the job leaves its result where its caller finds it. Compiled once, not for every kind of result.
+fn run_boxed(
+    watch: &dyn Watch,
+    patience: Duration,
+    job: Box<dyn FnOnce(&dyn Watch) + Send>,
+) -> Result<(), WorkerError> {
     if watch.stop() {
         return Err(WorkerError::Interrupted);
     }
@@ -78,9 +98,9 @@ pub fn run_patiently<T: Send + 'static>(
         // deep elimination trees recurse
         .stack_size(64 << 20)
         .spawn(move || {
-            let result = catch_unwind(AssertUnwindSafe(|| job(&*theirs)));
-            // the receiver is gone if the user gave up: nothing is left to do with the result
-            let _ = sender.send(result);
+            let ended = catch_unwind(AssertUnwindSafe(|| job(&*theirs)));
+            // the receiver is gone if the user gave up: nothing is left to say
+            let _ = sender.send(ended);
         });
     if let Err(error) = spawned {
         return Err(WorkerError::NoThread(error.to_string()));
@@ -88,7 +108,7 @@ pub fn run_patiently<T: Send + 'static>(
     let mut stopped: Option<Instant> = None;
     loop {
         match receiver.recv_timeout(LOOK) {
-            Ok(Ok(result)) => return Ok(result),
+            Ok(Ok(())) => return Ok(()),
             Ok(Err(panic)) => return Err(WorkerError::Panicked(panic_text(panic.as_ref()))),
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(WorkerError::Panicked("its thread vanished".to_owned()));

@@ -30,7 +30,7 @@ const SQUARE: usize = 64;
 /// See [`GivenError`].
 pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, Vec<String>), GivenError> {
     match &given.matrix {
-        GivenMatrix::Stiffness(rows) => from_stiffness(given, &symmetric(rows)),
+        GivenMatrix::Stiffness(rows) => from_stiffness(given, symmetric(rows)),
         GivenMatrix::Compliance(rows) => from_compliance(given, symmetric(rows)),
     }
 }
@@ -68,33 +68,36 @@ fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<(PivotedCholes
 
 fn from_stiffness(
     given: &GivenContactSystem,
-    matrix: &DMatrix<f64>,
+    matrix: DMatrix<f64>,
 ) -> Result<(ContactSystem, Vec<String>), GivenError> {
     let mut remarks = Vec::new();
     // What the author knows to be a kernel is one, to the last digit, whatever the digits of the matrix.
     let (motions, data) = match &given.kernel {
         Some(kernel) => {
             let motions: Vec<DVector<f64>> = kernel.iter().map(|z| DVector::from_column_slice(z)).collect();
-            let exact = motions.iter().all(|z| is_null(matrix, z));
-            let data = if exact { matrix.clone() } else { without_kernel(matrix, &motions) };
+            let exact = motions.iter().all(|z| is_null(&matrix, z));
+            let data = if exact { matrix } else { without_kernel(&matrix, &motions) };
             null_space("stiffness", &data)?;
             (motions, data)
         }
         None => {
-            let (whole, null) = null_space("stiffness", matrix)?;
+            let (whole, null) = null_space("stiffness", &matrix)?;
             remarks.extend(null.near.iter().map(|z| nearly_singular(given, z, &whole.scale)));
-            (null.exact, matrix.clone())
+            (null.exact, matrix)
         }
     };
     let rows = Rows::of(given);
-    let factor = PivotedCholesky::new(&Rows::block(&data, &rows.released, &rows.released));
-    let stiffness = condensed(&data, &rows, &factor);
+    let (stiffness, file) = if rows.released.is_empty() {
+        (data, None)
+    } else {
+        let factor = PivotedCholesky::new(&Rows::block(&data, &rows.released, &rows.released));
+        (condensed(&data, &rows, &factor), Some((data, factor)))
+    };
     // Motions of the kept joints alone that cost nothing: those of the whole, restricted.
-    let restricted: Vec<DVector<f64>> =
-        motions.iter().map(|z| DVector::from_fn(rows.kept.len(), |a, _| z[rows.kept[a]])).collect();
+    let restricted: Vec<DVector<f64>> = motions.iter().map(|z| rows.over_kept(z.as_slice())).collect();
     let kernel = orthonormal(&restricted, rows.kept.len());
     let corrected = (kernel.ncols() > 0).then(|| without_kernel(&stiffness, &restricted));
-    let file = (!rows.released.is_empty()).then(|| Arc::new(rows.data(data, false, given, factor)));
+    let file = file.map(|(data, factor)| Arc::new(rows.data(data, false, given, factor)));
     let loads = joint_loads(given, &stiffness, file.as_deref())?;
     let rounded = file.is_some();
     let system = ContactSystem {
@@ -120,9 +123,6 @@ fn condensed(data: &DMatrix<f64>, rows: &Rows, factor: &PivotedCholesky) -> DMat
         column.copy_from(&factor.solve(&right.into_owned()));
     }
     let mut stiffness = Rows::block(data, &rows.kept, &rows.kept);
-    if rows.released.is_empty() {
-        return stiffness;
-    }
     for i in 0..stiffness.nrows() {
         for j in 0..=i {
             let entry = cleaned(stiffness[(i, j)], &coupling.column(i).component_mul(&response.column(j))).0;
