@@ -50,11 +50,13 @@ impl<'d> Cursor<'d> {
             return Some(Number::Parameter(text.to_owned()));
         }
         let names = parameters.names();
-        if is_id(text) && !names.is_empty() && text != "pi" {
+        // `L-b` may be a name that was not declared: then it is told as one.
+        let is_unknown = is_id(text) && Expression::parse(text, &names).is_err();
+        if is_unknown && !names.is_empty() {
             self.unknown("parameter", text, &names);
             return None;
         }
-        if is_id(text) && text != "pi" {
+        if is_unknown {
             self.problem(
                 format!("unknown parameter {}: the scenario has none", quoted(text)),
                 "write a number, or define the name under `parameters`",
