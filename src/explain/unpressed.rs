@@ -232,7 +232,7 @@ impl<'s> Joints<'s> {
     }
 
     fn bodies(&self, pair: &Pair) -> [Option<usize>; 2] {
-        [Some(self.part[pair.node]), pair.weights.get(1).map(|(node, _)| self.part[*node])]
+        [Some(self.part[pair.node]), pair.against().map(|node| self.part[node])]
     }
 
     /// Whether another pair of the same joint carries, or the other side of a guide.

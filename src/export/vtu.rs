@@ -108,10 +108,10 @@ impl Mesh<'_> {
         writeln!(out, "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
     }
 
-    /// A value of every node, and of the node of every pair.
+    /// A value of every node, and at the place of every pair.
     fn over_points<const N: usize>(&self, value: impl Fn(usize) -> [f64; N]) -> Vec<[f64; N]> {
-        let of_pairs = self.0.structure.pairs.iter().map(|pair| pair.node);
-        (0..self.0.structure.nodes.len()).chain(of_pairs).map(value).collect()
+        let of_pairs = self.0.structure.pairs.iter().map(|pair| pair.at_place(&value));
+        (0..self.0.structure.nodes.len()).map(&value).chain(of_pairs).collect()
     }
 
     /// A value of every pair, `none` at the nodes.

@@ -306,6 +306,25 @@ impl Elimination {
             .collect()
     }
 
+    /// The magnitudes of the terms that T v + G z is the sum of, on the base dofs, where it is `u`; `z` are those of the joints.
+    pub fn sizes(&self, u: &[f64], z: &[f64]) -> Vec<f64> {
+        let mut v = vec![0.0; self.masters];
+        for (dof, u) in u.iter().enumerate() {
+            if let Some(single) = self.single(dof) {
+                v[single] = u.abs();
+            }
+        }
+        let of = |(dof, u): (usize, &f64)| match &self.rows[dof] {
+            Row::Held(_) | Row::Free(_) => u.abs(),
+            Row::Sum(_) => {
+                let free: f64 = self.free_terms(dof).map(|(i, a)| a.abs() * v[i]).sum();
+                let joints: f64 = self.joint_terms(dof).map(|(j, a)| a.abs() * z[j]).sum();
+                u.abs().max(free + joints)
+            }
+        };
+        u.iter().enumerate().map(of).collect()
+    }
+
     /// Takes the forces inside rigid bodies out of nodal forces: f − Aᵀ μ with μ = G_Aᵀ f. What is left is for supports
     /// and ties; in balance it is zero where there are none.
     pub fn take_out_body_forces<T: Real>(&self, forces: &mut [T]) {

@@ -4,8 +4,9 @@
 //!     r = K u − F − Bᵀ λ on every component that no support holds (ties summed, rigid bodies as a whole)
 //!     |r_i| ≤ TOL · s_i + ρ_i
 //!     s_i   the forces that meet there: of each element, of the loads, of the joints
-//!     ρ_i   what rounding leaves: 4 ε Σ_k |K_ik||u_k|, with ε² where K and u are in doubled precision;
-//!           where conjugate gradients ended; and the rounding of λ = R z + RF where a joint acts
+//!     ρ_i   what rounding leaves: 4 ε Σ_k |K_ik||u_k|, with ε² where K and u are in doubled precision (|u_k|: of the terms
+//!           that u_k is the sum of, u = T v + G z + S s); where conjugate gradients ended; and the rounding of
+//!           λ = R z + RF where a joint acts
 //! ```
 
 use nalgebra::DVector;
@@ -183,8 +184,8 @@ impl MainSystem {
     /// The compatibility residual of a state, and the largest force that is left, as a share of 1e9 times what rounding
     /// may leave.
     fn unexplained(&self, state: &BalancedState<'_>, u: &[f64], [forces, mut terms]: [Vec<f64>; 2]) -> f64 {
-        if let Some(sizes) = self.sizes_where_supports_settle(u, state.factors) {
-            terms = self.k.times_absolute(&sizes);
+        if self.settled.iter().any(Option::is_some) {
+            terms = self.k.times_absolute(&self.sizes(u, state.factors, Some(&state.terms)));
         }
         let residual = self.unheld(self.minus_loads(forces, state.force, state.factors));
         let rounding = self.rounding_of(u, &terms, 0.0, state.factors, Some(&state.terms));
@@ -303,19 +304,32 @@ impl MainSystem {
         }
     }
 
-    /// |u| with what supports that settle add to its terms: u is a sum then, S s and the rest, that may cancel (an open
-    /// gap, say). `None` where none settles.
-    fn sizes_where_supports_settle(&self, base: &[f64], factors: &[f64]) -> Option<Vec<f64>> {
-        let settled = self.settlement(factors)?;
-        Some(std::iter::zip(base, settled).map(|(u, s)| u.abs() + s.abs()).collect())
+    /// The magnitudes of the terms that u is the sum of: those of a node that follows a joint may cancel (one at rest where
+    /// a gap opens by all that the other side moves), and what supports that settle add.
+    fn sizes(&self, base: &[f64], factors: &[f64], dislocations: Option<&DVector<f64>>) -> Vec<f64> {
+        let mut sizes = self.elimination.sizes(base, &self.dislocation_sizes(base, dislocations));
+        for (size, settled) in std::iter::zip(&mut sizes, self.settlement(factors).into_iter().flatten()) {
+            *size += settled.abs();
+        }
+        sizes
+    }
+
+    /// |B u| of the independent joints, or of the terms that are known of them, whichever is more: a gap that is open by all
+    /// of itself moves nothing, and is a difference all the same.
+    fn dislocation_sizes(&self, base: &[f64], dislocations: Option<&DVector<f64>>) -> Vec<f64> {
+        let size = |(index, joint): (usize, &Joint)| {
+            let mut z = 0.0;
+            self.each_term(joint, |dof, a| z += a * base[dof]);
+            dislocations.map_or(0.0, |terms| terms[self.independent[index]]).max(z.abs())
+        };
+        self.joints.iter().enumerate().map(size).collect()
     }
 
     /// What rounding may leave of each row; `dislocations`: the magnitudes of the terms of those of all joints, where they are
     /// known.
     pub(super) fn rounding(&self, u: &Displacements, factors: &[f64], dislocations: Option<&DVector<f64>>) -> Vec<f64> {
         let base = self.dofs.gather(&u.0);
-        let sizes = self.sizes_where_supports_settle(&base, factors);
-        let terms = self.k.times_absolute(sizes.as_ref().unwrap_or(&base));
+        let terms = self.k.times_absolute(&self.sizes(&base, factors, dislocations));
         self.rounding_of(&base, &terms, u.1.as_ref().map_or(0.0, |tail| tail.error), factors, dislocations)
     }
 
@@ -331,14 +345,8 @@ impl MainSystem {
     ) -> Vec<f64> {
         // λ is as good as R and RF, and R and RF as good as the energies they come from.
         let root = |joint: usize| self.r[(joint, joint)].max(0.0).sqrt();
-        let mut dislocation = 0.0;
-        for (index, joint) in self.joints.iter().enumerate() {
-            let mut z = 0.0;
-            self.each_term(joint, |dof, a| z += a * base[dof]);
-            // A gap that is open by all of itself moves nothing, and is a difference all the same.
-            let own = dislocations.map_or(0.0, |terms| terms[self.independent[index]]);
-            dislocation += root(index) * own.max(z.abs());
-        }
+        let sizes = self.dislocation_sizes(base, dislocations);
+        let dislocation: f64 = sizes.iter().enumerate().map(|(index, size)| root(index) * size).sum();
         let row = if self.doubled.is_some() { DOUBLED_ROW } else { ROW };
         let mut rows: Vec<f64> = terms.iter().map(|terms| row * terms).collect();
         if error > 0.0 {

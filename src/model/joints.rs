@@ -70,19 +70,17 @@ fn join_nearest(structure: &Structure, material: &Material, pieces: &mut Vec<Vec
 /// The distance of two pairs that are neighbours in a joint.
 fn are_neighbours(structure: &Structure, material: &Material, a: usize, b: usize) -> Option<f64> {
     let [p, q] = [a, b].map(|pair| &structure.pairs[pair]);
-    let [from, to] = [p, q].map(|pair| structure.nodes[pair.node].position);
+    let [from, to] = [p, q].map(|pair| pair.at_place(|node| structure.nodes[node].position));
     let way = way(from, to);
     let distance = length(way);
     let along = |normal: [f64; 3]| dot(way, normal).abs() <= ASIDE * distance;
     if dot(p.normal, q.normal) < TURN || !along(p.normal) || !along(q.normal) {
         return None;
     }
-    let against =
-        |pair: &super::pair::Pair| pair.weights.iter().find(|(_, weight)| *weight < 0.0).map(|(node, _)| *node);
-    let meet_on_ground = distance == 0.0 && against(p).is_none() && against(q).is_none();
+    let meet_on_ground = distance == 0.0 && p.against().is_none() && q.against().is_none();
     let through = meet_on_ground
         || material.connects(p.node, q.node, DETOUR * distance)
-        || against(p).zip(against(q)).is_some_and(|(a, b)| material.connects(a, b, DETOUR * distance));
+        || p.against().zip(q.against()).is_some_and(|(a, b)| material.connects(a, b, DETOUR * distance));
     through.then_some(distance)
 }
 
@@ -160,6 +158,7 @@ mod tests {
             structure.pairs.push(Pair {
                 id: format!("c{index}"),
                 node: index,
+                place: vec![(index, 1.0)],
                 weights: Pair::of_nodes(index, None),
                 normal: flat(normal),
                 tangents: structure.dimension.tangents(flat(normal)),

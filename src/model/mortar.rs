@@ -10,9 +10,10 @@
 //! along the interpolated mean normals of the non-mortar edge; sides are cut where a corner of the other edge is met,
 //! so that every integral is one of a polynomial where both edges are straight.
 //!
-//! * **Ends.** Where the other edge ends inside a side, the functions of that side are made of those of its nodes that
-//!   face the other edge, as the dual of the polynomial through them: with one such node Ψ = 1. Uniform traction is
-//!   still exact, and no force stands outside the common length, as it would if the node beyond had a pair of its own.
+//! * **Ends.** Where the other edge ends inside a side, the functions of that side are the dual of the polynomial through
+//!   those of its nodes that face the other edge and the place of the end. That place has a pair of its own, numbered as the
+//!   node beyond, which moves with the nodes of the side. So forces and moments of any linear traction are carried over, no
+//!   force stands outside the common length, and the force may move up to its very end, where a body tips over.
 //! * **Corners.** Where both edges have a node at one bend, it is a pair of two nodes, and the functions next to it are
 //!   made of the other nodes of their sides: else the traction of one leg would act on the other one.
 
@@ -39,6 +40,10 @@ const FACING: f64 = 0.1;
 /// Shares of a side that count as nothing: coordinates of meshes agree that well (see `decode::sides`).
 const NEAR: f64 = 1e-6;
 
+/// An end of the other edge nearer to a node than this share of the side has no pair beside that of the node: R would
+/// be worth a million times fewer digits, and a body tips over at most so much too early.
+const BESIDE: f64 = 1e-3;
+
 /// Weights that are sums of a few products of numbers up to 1 and vanish by themselves.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -52,16 +57,25 @@ pub enum MortarError {
     Apart,
     /// They have this node in common.
     Shared(usize),
-    /// The other edge begins and ends between these two neighbouring nodes.
-    Between([usize; 2]),
 }
 
-/// The weights of the mutual displacement at every node of `edge`, own node first, those of each edge summing to 1 and
-/// −1; `None` at nodes that do not face `other`.
+/// A pair of two edges.
+pub struct MortarPair {
+    /// Nodes of `edge` and what each counts in its place: one node, or those of the side on which the other edge ends.
+    pub place: Weights,
+    /// Of the mutual displacement, those of each edge summing to 1 and −1; the node that it is numbered as first.
+    pub weights: Weights,
+    /// Out of the body of `edge`, of unit length.
+    pub normal: [f64; 2],
+    /// The part of the common length that stands for it.
+    pub share: f64,
+}
+
+/// The pairs by the nodes of `edge`; `None` where neither the node nor a place beside it, at which `other` ends, faces it.
 ///
 /// # Errors
 /// See [`MortarError`].
-pub fn weights(edge: &Edge, other: &Edge, nodes: &[Node]) -> Result<Vec<Option<Weights>>, MortarError> {
+pub fn pairs(edge: &Edge, other: &Edge, nodes: &[Node]) -> Result<Vec<Option<MortarPair>>, MortarError> {
     if let Some(&shared) = edge.nodes.iter().find(|node| other.nodes.contains(node)) {
         return Err(MortarError::Shared(shared));
     }
@@ -70,26 +84,29 @@ pub fn weights(edge: &Edge, other: &Edge, nodes: &[Node]) -> Result<Vec<Option<W
     let supported = mortar.supported(&sides);
     let corners = mortar.corners(&sides);
     let mut rows: Vec<Row> = vec![Row::default(); edge.nodes.len()];
-    for (side, cuts) in edge.sides.iter().zip(&sides) {
-        if cuts.pieces.is_empty() {
+    for (side, covered) in edge.sides.iter().zip(&sides) {
+        if covered.pieces.is_empty() {
             continue;
         }
-        let at = |k: usize| mortar.first_mention(cuts.first + k);
-        let facing: Vec<usize> = (0..side.nodes().count()).filter(|&k| supported[at(k)]).collect();
-        if facing.is_empty() {
-            return Err(MortarError::Between(side.ends));
-        }
-        let free: Vec<usize> = facing.into_iter().filter(|&k| corners[at(k)].is_none()).collect();
-        mortar.add_side(side, cuts, &free, &mut rows);
+        let places: Vec<Place> = mortar
+            .places(side, covered, &supported)
+            .into_iter()
+            .filter(|place| corners[place.row].is_none() && !(place.is_end && rows[place.row].end.is_some()))
+            .collect();
+        mortar.add_side(side, covered, places, &mut rows);
     }
-    let finished: Vec<Option<Weights>> = (0..edge.distinct_nodes().len())
-        .map(|k| match corners[k] {
-            _ if !supported[k] => None,
-            Some(partner) => Some(vec![(edge.nodes[k], 1.0), (partner, -1.0)]),
-            None => rows[k].finish(edge.nodes[k], &corners, edge),
-        })
-        .collect();
-    if finished.iter().all(Option::is_none) { Err(MortarError::Apart) } else { Ok(finished) }
+    let pair = |k: usize| {
+        let node = edge.nodes[k];
+        let (place, weights, normal) = match (corners[k], &rows[k].end) {
+            (Some(partner), _) => (vec![(node, 1.0)], vec![(node, 1.0), (partner, -1.0)], mortar.normals[k]),
+            (None, None) => (vec![(node, 1.0)], rows[k].finish(node, &corners, edge)?, mortar.normals[k]),
+            (None, Some((place, normal))) => (place.clone(), rows[k].finish(node, &corners, edge)?, *normal),
+        };
+        Some(MortarPair { place, weights, normal, share: rows[k].share })
+    };
+    let faces = |k: usize| supported[k] || rows[k].end.is_some();
+    let found: Vec<_> = (0..edge.distinct_nodes().len()).map(|k| if faces(k) { pair(k) } else { None }).collect();
+    if found.iter().all(Option::is_none) { Err(MortarError::Apart) } else { Ok(found) }
 }
 
 /// How far the polygon of an edge may lie off the curve it stands for: a share of its longest side by its largest bend.
@@ -121,9 +138,22 @@ struct Covered {
     pieces: Vec<([f64; 2], usize)>,
 }
 
-/// What is integrated for one node.
+/// A place that the functions of a side are made of.
+struct Place {
+    t: f64,
+    /// The row of its pair.
+    row: usize,
+    /// Whether it is no node, but where the other edge ends; its pair is numbered as the node beyond.
+    is_end: bool,
+}
+
+/// What is integrated for one pair.
 #[derive(Clone, Default)]
 struct Row {
+    /// The place of the pair by nodes, and its normal, where it is at an end of the other edge.
+    end: Option<(Weights, [f64; 2])>,
+    /// ∫ Ψ over the common length.
+    share: f64,
     /// ∫ Ψ N over the nodes of its own edge.
     own: BTreeMap<usize, f64>,
     /// ∫ Ψ N over the nodes of the other one.
@@ -276,21 +306,27 @@ impl Mortar<'_> {
         corners
     }
 
-    /// Adds the integrals over one side, with functions made of its nodes `free`.
-    fn add_side(&self, side: &EdgeSide, covered: &Covered, free: &[usize], rows: &mut [Row]) {
-        let places: Vec<f64> = match side.middle {
-            None => vec![0.0, 1.0],
-            Some(_) => vec![0.0, 0.5, 1.0],
-        };
-        let count = free.len();
-        if count == 0 {
-            return;
+    /// The nodes of a side that face the other edge, and its ends between nodes.
+    fn places(&self, side: &EdgeSide, covered: &Covered, supported: &[bool]) -> Vec<Place> {
+        let last = side.nodes().count() - 1;
+        let t = |k: usize| k as f64 / last as f64;
+        let row = |k: usize| self.first_mention(covered.first + k);
+        let mut places: Vec<Place> =
+            (0..=last).filter(|&k| supported[row(k)]).map(|k| Place { t: t(k), row: row(k), is_end: false }).collect();
+        let from = covered.pieces.iter().map(|([a, _], _)| *a).fold(1.0, f64::min);
+        let to = covered.pieces.iter().map(|([_, b], _)| *b).fold(0.0, f64::max);
+        let ends = [(from, (0..=last).rfind(|&k| t(k) < from)), (to, (0..=last).find(|&k| t(k) > to))];
+        for (at, beyond) in ends {
+            let is_free = |k: &usize| !supported[row(*k)] && places.iter().all(|place| (place.t - at).abs() > BESIDE);
+            if let Some(k) = beyond.filter(is_free) {
+                places.push(Place { t: at, row: row(k), is_end: true });
+            }
         }
-        // The polynomial through the nodes in `free`.
-        let lagrange = |i: usize, t: f64| -> f64 {
-            let others = free.iter().filter(|&&k| k != free[i]);
-            others.map(|&k| (t - places[k]) / (places[free[i]] - places[k])).product()
-        };
+        places
+    }
+
+    /// Adds the integrals over one side, with the dual functions of the polynomial through `places`.
+    fn add_side(&self, side: &EdgeSide, covered: &Covered, mut places: Vec<Place>, rows: &mut [Row]) {
         let mut points = Vec::new();
         for &([a, b], opposite) in &covered.pieces {
             for (x, w) in GAUSS {
@@ -299,11 +335,24 @@ impl Mortar<'_> {
                 points.push((t, w * (b - a) * dx.hypot(dy), opposite));
             }
         }
+        let size = |places: &[Place], i: usize| -> f64 {
+            points.iter().map(|&(t, weight, _)| weight * lagrange(places, i, t)).sum()
+        };
+        // A pressure must not pull anywhere: where an end comes too near to the node in the middle, that has no function.
+        let length: f64 = points.iter().map(|(_, weight, _)| weight).sum();
+        if places.len() == 3 && (0..3).any(|i| size(&places, i) <= BESIDE * length) {
+            places.sort_by(|a, b| a.t.total_cmp(&b.t));
+            places.remove(1);
+        }
+        let count = places.len();
+        if count == 0 {
+            return;
+        }
+        let sizes: Vec<f64> = (0..count).map(|i| size(&places, i)).collect();
+        let lagrange = |i: usize, t: f64| lagrange(&places, i, t);
         let mut mass = DMatrix::<f64>::zeros(count, count);
-        let mut sizes = vec![0.0; count];
         for &(t, weight, _) in &points {
             for i in 0..count {
-                sizes[i] += weight * lagrange(i, t);
                 for j in 0..count {
                     mass[(i, j)] += weight * lagrange(i, t) * lagrange(j, t);
                 }
@@ -311,12 +360,18 @@ impl Mortar<'_> {
         }
         // A Gram matrix of independent polynomials on a stretch of some length.
         let Some(inverse) = mass.try_inverse() else { return };
-        let is_whole = count == places.len();
         let own: Vec<usize> = side.nodes().collect();
-        for i in 0..count {
-            let row = &mut rows[self.first_mention(covered.first + free[i])];
+        // The shape functions of the side are among the polynomials: ∫ Ψ N is what they are at the place.
+        let is_whole = count == own.len();
+        for (i, place) in places.iter().enumerate() {
+            let row = &mut rows[place.row];
+            let at_place = || own.iter().copied().zip(side.shape(place.t).0).filter(|(_, n)| *n != 0.0);
+            row.share += sizes[i];
+            if place.is_end {
+                row.end = Some((at_place().collect(), side.outward(side.at(self.nodes, place.t).1)));
+            }
             if is_whole {
-                *row.own.entry(own[free[i]]).or_default() += sizes[i];
+                at_place().for_each(|(node, n)| *row.own.entry(node).or_default() += sizes[i] * n);
             }
             for &(t, weight, opposite) in &points {
                 let dual: f64 = (0..count).map(|j| sizes[i] * inverse[(i, j)] * lagrange(j, t)).sum();
@@ -334,6 +389,12 @@ impl Mortar<'_> {
             }
         }
     }
+}
+
+/// The polynomial that is 1 at place i and 0 at the others.
+fn lagrange(places: &[Place], i: usize, t: f64) -> f64 {
+    let others = places.iter().enumerate().filter(|(k, _)| *k != i);
+    others.map(|(_, other)| (t - other.t) / (places[i].t - other.t)).product()
 }
 
 /// Where the line through `position` along `normal` meets a side, 0 ≤ t ≤ 1, and how far away (in lengths of `normal`);

@@ -130,8 +130,11 @@ pub type Weights = Vec<(usize, f64)>;
 pub struct Pair {
     /// `c1`, `joint[0]`.
     pub id: String,
-    /// Index of the second side's node: the place of the pair.
+    /// Index of the second side's node.
     pub node: usize,
+    /// Nodes of the second side and what each counts in the place of the pair: `node` alone, but at the end of an edge
+    /// that lies between two nodes of the other.
+    pub place: Weights,
     /// The nodes that move against each other, `node` first, with their weights: 1 on the second side and −1 on the
     /// first, in sum where several nodes of an edge stand for a side; nothing on the first side for the ground (u = 0).
     pub weights: Weights,
@@ -151,6 +154,21 @@ impl Pair {
     /// The id of the contact that it comes from: `joint` of `joint[0]`.
     pub fn contact(&self) -> &str {
         self.id.split('[').next().unwrap_or(&self.id)
+    }
+
+    /// A quantity of nodes at the place of the pair.
+    pub fn at_place<const N: usize>(&self, of_node: impl Fn(usize) -> [f64; N]) -> [f64; N] {
+        if let [(node, 1.0)] = self.place[..] {
+            return of_node(node);
+        }
+        let terms = self.place.iter().map(|&(node, weight)| of_node(node).map(|value| weight * value));
+        terms.fold([0.0; N], |sum, term| std::array::from_fn(|c| sum[c] + term[c]))
+    }
+
+    /// The node that stands for the first side; none on the ground.
+    pub fn against(&self) -> Option<usize> {
+        let least = self.weights.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        least.filter(|(_, weight)| *weight < 0.0).map(|(node, _)| *node)
     }
 
     /// The weights of a node against another one, or against the ground.

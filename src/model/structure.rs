@@ -53,9 +53,11 @@ pub struct Body {
 pub struct EdgeContact {
     /// `joint`.
     pub id: String,
-    /// Nodes of the edge or face in order, those of skipped pairs included: pair k is at node k.
+    /// Nodes of the edge or face in order, those of skipped pairs included: pair k is at node k, or beside it (see
+    /// [`Pair::place`](super::pair::Pair::place)).
     pub nodes: Vec<usize>,
-    /// The part of the area of a face that stands for each node; none of an edge, whose nodes lie one after the other.
+    /// The part of the area of a face, or of the common length of edges whose nodes do not match, that stands for each
+    /// node; none of other edges, whose nodes lie one after the other.
     pub shares: Vec<f64>,
 }
 

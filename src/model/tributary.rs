@@ -17,8 +17,8 @@ pub fn tributary_lengths(structure: &Structure) -> Vec<Option<f64>> {
     let mut lengths = vec![None; structure.pairs.len()];
     for (joint, pairs) in joints(structure) {
         let edge = structure.edge_contacts.iter().find(|edge| edge.id == joint);
-        if let Some(face) = edge.filter(|edge| !edge.shares.is_empty()) {
-            pairs.iter().for_each(|&(pair, index)| lengths[pair] = Some(face.shares[index]));
+        if let Some(known) = edge.filter(|edge| !edge.shares.is_empty()) {
+            pairs.iter().for_each(|&(pair, index)| lengths[pair] = Some(known.shares[index]));
             continue;
         }
         let nodes: Vec<usize> = match edge {

@@ -278,7 +278,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
         .map(|(i, pair)| ContactPair {
             id: pair.id.clone(),
             law: pair.law.clone(),
-            position: Some(structure.nodes[pair.node].position),
+            position: Some(pair.at_place(|node| structure.nodes[node].position)),
             frame: (structure.dimension == Dimension::Space).then(|| [pair.normal, pair.tangents[0]]),
             joint: numbers[i],
             tangential: tangential(i),

@@ -1,8 +1,8 @@
 //! Contact of edges whose nodes do not match, against closed forms.
 
-use crate::common::{Case, balance, close, displacement, is_answer, mechanism, near, of_pairs};
+use crate::common::{Case, balance, close, displacement, is_answer, lines, mechanism, near, of_pairs, scenario_text};
 use serde_json::{Value, json};
-use stickslip::answer::record::State;
+use stickslip::answer::record::{OutcomeKind, State};
 use stickslip::model::scenario::Source;
 
 const E: f64 = 1000.0;
@@ -271,13 +271,73 @@ fn edges_that_overlap_in_part() {
         }),
     ));
     let ids: Vec<String> = case.solve(&[]).pairs.iter().map(|pair| pair.id.clone()).collect();
-    // Nodes at 0.5, 1, 1.5 lie on the lower block, 2 and 2.5 beyond it.
-    assert_eq!(ids, ["joint[0]", "joint[1]", "joint[2]"]);
+    // Nodes at 0.5, 1, 1.5 lie on the lower block, 2 and 2.5 beyond it: the pair at its end, 1.75, has the number of 2.
+    assert_eq!(ids, ["joint[0]", "joint[1]", "joint[2]", "joint[3]"]);
+    assert_eq!(case.solve(&[]).pairs[3].position.map(|[x, y, _]| [x, y]), Some([1.75, 0.0]));
     let answer = case.solve(&[("s", 1.0)]);
     is_answer(&answer);
     let values = case.scenario.parameter_values();
     assert!(balance::incompatibility(&case.scenario, &values, &case.solve(&[])) < 1e-10);
     close("Σ x_n", of_pairs(&answer, |pair| pair.x_n).iter().sum(), 4.0, 1e-11);
+}
+
+/// A block of width 2 and weight 20 that is pushed at its top, 1 above the joint, tips about the end of what lies below it,
+/// whatever the meshes and whichever edge has the pairs: H = 20 · (end − middle of the block) / 1.
+#[test]
+fn a_block_tips_about_the_end_of_the_common_length() {
+    // Left end of the block, H: inside a wall from 0 to 4, and hanging over its right end at 4.
+    for (left, limit) in [(1.3, 20.0), (2.5, 10.0)] {
+        for divisions in [(4, 4), (5, 4), (7, 5), (8, 3), (16, 6), (40, 1), (1, 6)] {
+            for block_has_pairs in [true, false] {
+                let (edge, against) =
+                    if block_has_pairs { ("upper.bottom", "lower.top") } else { ("lower.top", "upper.bottom") };
+                let case = Case::json(plates(
+                    (left, 2.0, divisions.1),
+                    (0.0, 4.0, divisions.0),
+                    json!({
+                        "parameters": {"H": 0},
+                        "contacts": [{"id": "joint", "edge": edge, "against": against, "friction": 50}],
+                        "loads": {"weight": {"items": [{"traction": {"edge": "upper.top", "value": [0, -10]}}]},
+                                  "push": {"factor": "H", "items": [{"point": {"at": "upper.top", "force": [1, 0]}}]}}
+                    }),
+                ));
+                let what = format!("{left}, {divisions:?}, pairs of {edge}");
+                let held = case.solve(&[("H", limit * (1.0 - 1e-7))]);
+                assert_eq!(held.outcome, OutcomeKind::Normal, "{what}: {:?}", held.failure);
+                let tips = case.solve(&[("H", limit * (1.0 + 1e-7))]);
+                assert!(mechanism(&tips).direction.pairs().iter().any(|pair| pair.z_n != 0.0), "{what}");
+                // The resultant stands where the weight and the push put it: at the middle + H/20.
+                let held = case.solve(&[("H", 0.37 * limit)]);
+                is_answer(&held);
+                let sum = |with: &dyn Fn([f64; 3]) -> f64| -> f64 {
+                    held.pairs.iter().map(|pair| pair.x_n * with(pair.position.expect("a place"))).sum()
+                };
+                close(&what, sum(&|[x, _, _]| x) / sum(&|_| 1.0), left + 1.0 + 0.37 * limit / 20.0, 1e-9);
+            }
+        }
+    }
+}
+
+/// `resultant joint e` is where the load stands, from the middle of the edge, also where the other edge ends inside a side.
+#[test]
+fn the_resultant_stands_where_the_load_does() {
+    let scenario = plates(
+        (0.8, 2.0, 3),
+        (0.0, 4.0, 7),
+        json!({
+            "parameters": {"H": 0},
+            "contacts": [{"id": "joint", "edge": "lower.top", "against": "upper.bottom", "friction": 5}],
+            "loads": {"weight": {"items": [{"traction": {"edge": "upper.top", "value": [0, -10]}}]},
+                      "push": {"factor": "H", "items": [{"point": {"at": "upper.top", "force": [1, 0]}}]}}
+        }),
+    );
+    let mut session = lines::read(&scenario_text(scenario));
+    for h in [0.0, 3.0, 15.0] {
+        lines::report(&mut session, &format!("set H {h}")).expect("a parameter");
+        // the middle of the block at 1.8, that of the wall at 2; a lever of 1 for the push
+        let expected = 1.8 + h * 1.0 / 20.0 - 2.0;
+        lines::report(&mut session, &format!("expect resultant joint e = {expected} ± 1e-9")).expect("where it stands");
+    }
 }
 
 /// A parabola y = x²/2R (a cylinder of radius R near its apex) pressed on a flat block of other nodes, gaps from the

@@ -133,7 +133,16 @@ impl Model {
         let length = normal[0].hypot(normal[1]);
         let (weights, normal) = (Pair::of_nodes(node, against), flat(normal.map(|n| n / length)));
         let tangents = self.0.dimension.tangents(normal);
-        self.0.pairs.push(Pair { id, node, weights, normal, tangents, slides_on_ground: false, law });
+        self.0.pairs.push(Pair {
+            id,
+            node,
+            place: vec![(node, 1.0)],
+            weights,
+            normal,
+            tangents,
+            slides_on_ground: false,
+            law,
+        });
     }
 
     pub fn case(&mut self, loads: Vec<Load>) {

@@ -106,6 +106,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
         Some(Pair {
             id: if is_border { format!("{id}[{index}]") } else { id.to_string() },
             node: sides.nodes[index],
+            place: sides.places.get(&index).cloned().unwrap_or_else(|| vec![(sides.nodes[index], 1.0)]),
             weights: weights.clone()?,
             normal: sides.normals[index],
             tangents: tangents[index].clone(),

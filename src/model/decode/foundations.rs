@@ -220,6 +220,7 @@ fn tensionless(builder: &mut Builder<'_>, foundation: &Foundation<'_>, index: us
     builder.structure.pairs.push(Pair {
         id,
         node: at.node,
+        place: vec![(at.node, 1.0)],
         weights: Pair::of_nodes(at.node, Some(ground)),
         normal: at.normal,
         tangents: builder.structure.dimension.tangents(at.normal),

@@ -1,13 +1,15 @@
 //! The two sides of a contact: which nodes meet which, along which normals, how far apart.
 
+use std::collections::BTreeMap;
+
 use super::builder::Builder;
 use super::reader::{Cursor, Fields};
 use super::spot::Spot;
 use super::words::near;
 use crate::model::edge::Edge;
-use crate::model::mortar::{self, MortarError};
+use crate::model::mortar::{self, MortarError, MortarPair};
 use crate::model::pair::{Pair, Weights};
-use crate::model::vector::{dot, way};
+use crate::model::vector::{dot, flat, way};
 
 /// The word for the ground in `against`.
 pub const GROUND: &str = "ground";
@@ -21,10 +23,12 @@ pub struct Sides {
     pub nodes: Vec<usize>,
     /// Which nodes move against each other at each of them, see [`Pair::weights`]; `None` where nothing is opposite.
     pub weights: Vec<Option<Weights>>,
+    /// Places of the pairs that are not at their node, see [`Pair::place`].
+    pub places: BTreeMap<usize, Weights>,
     pub normals: Vec<[f64; 3]>,
     /// Distances of the two sides along the normals as they are drawn; `None` against the ground.
     pub gaps: Option<Vec<f64>>,
-    /// The part of the area of a face that stands for each node; empty otherwise.
+    /// The part of the area of a face, or of the common length of edges, that stands for each node; empty otherwise.
     pub shares: Vec<f64>,
 }
 
@@ -57,12 +61,12 @@ impl Sides {
             terms.sum::<f64>()
         };
         let gaps = weights.iter().zip(&normals).map(distance).collect();
-        Sides { nodes, weights, normals, gaps: Some(gaps), shares: Vec::new() }
+        Sides { nodes, weights, places: BTreeMap::new(), normals, gaps: Some(gaps), shares: Vec::new() }
     }
 
     pub fn on_ground(nodes: Vec<usize>, normals: Vec<[f64; 3]>) -> Sides {
         let weights = nodes.iter().map(|&node| Some(Pair::of_nodes(node, None))).collect();
-        Sides { nodes, weights, normals, gaps: None, shares: Vec::new() }
+        Sides { nodes, weights, places: BTreeMap::new(), normals, gaps: None, shares: Vec::new() }
     }
 }
 
@@ -275,13 +279,18 @@ impl TwoEdges<'_, '_> {
         let nodes = &self.builder.structure.nodes;
         let (at, against) = (self.at.quoted(), self.against.quoted());
         let id = |node: usize| self.builder.node_id(node);
-        let (message, help) = match mortar::weights(self.edge, self.other, nodes) {
-            Ok(weights) => {
-                let normals = match normal {
-                    Some(normal) => vec![normal; weights.len()],
-                    None => self.edge.outward_normals(nodes).into_iter().take(weights.len()).map(turned).collect(),
+        let (message, help) = match mortar::pairs(self.edge, self.other, nodes) {
+            Ok(pairs) => {
+                let own = self.edge.outward_normals(nodes);
+                let normal_of = |(k, pair): (usize, &Option<MortarPair>)| {
+                    normal.unwrap_or_else(|| turned(pair.as_ref().map_or(own[k], |pair| flat(pair.normal))))
                 };
-                let sides = Sides::new(self.builder, self.edge.distinct_nodes().to_vec(), weights, normals);
+                let normals = pairs.iter().enumerate().map(normal_of).collect();
+                let weights = pairs.iter().map(|pair| pair.as_ref().map(|pair| pair.weights.clone())).collect();
+                let mut sides = Sides::new(self.builder, self.edge.distinct_nodes().to_vec(), weights, normals);
+                sides.shares = pairs.iter().map(|pair| pair.as_ref().map_or(0.0, |pair| pair.share)).collect();
+                let places = pairs.into_iter().enumerate().filter_map(|(k, pair)| Some((k, pair?.place)));
+                sides.places = places.filter(|(_, place)| place.len() > 1).collect();
                 let room = NEAR * self.edge.length(nodes)
                     + mortar::chord_error(self.edge, nodes)
                     + mortar::chord_error(self.other, nodes);
@@ -304,10 +313,6 @@ impl TwoEdges<'_, '_> {
             Err(MortarError::Shared(node)) => (
                 format!("the edges {at} and {against} have the node \"{}\" in common", id(node)),
                 "each body needs nodes of its own along the joint",
-            ),
-            Err(MortarError::Between([a, b])) => (
-                format!("the edge {against} begins and ends between \"{}\" and \"{}\" of {at}", id(a), id(b)),
-                "exchange `edge` and `against`: the pairs belong to the finer one",
             ),
         };
         self.against.problem(message, help);

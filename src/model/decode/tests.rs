@@ -268,3 +268,29 @@ fn the_matrix_may_stand_in_a_file_beside_the_scenario() {
     let problems = load_text("inline", text, None).unwrap_err();
     assert!(problems.to_string().contains("without a file of its own"));
 }
+
+/// A string equal to a parameter's name is that parameter, any other an expression, with blanks or without.
+#[test]
+fn differences_need_no_blanks() {
+    let text = |nodes: &str| {
+        format!(
+            r#"{{"format": "stickslip/1", "title": "t", "parameters": {{"L": 4, "b": 1, "my-span": 7}}, "nodes": {{{nodes}}},
+                "springs": [{{"at": "A", "direction": "y", "stiffness": 1}}], "supports": [{{"at": "A", "fixed": ["x"]}}],
+                "contacts": [{{"id": "c", "node": "A", "against": "ground", "normal": [0, 1], "friction": 0}}], "loads": {{}}}}"#
+        )
+    };
+    for (written, expected) in [
+        ("L-b", 3.0),
+        ("L-1", 3.0),
+        ("L-1e0", 3.0),
+        ("L-pi", 4.0 - std::f64::consts::PI),
+        ("my-span", 7.0),
+        ("L-b-2", 1.0),
+    ] {
+        let scenario = load_text("t", &text(&format!(r#""A": ["{written}", 0]"#)), None).expect(written);
+        let Source::Structure(structure) = &scenario.source else { panic!() };
+        assert_eq!(structure.nodes[0].position[0], expected, "{written}");
+    }
+    let problems = load_text("t", &text(r#""A": ["my-spam", 0]"#), None).expect_err("no such name").to_string();
+    assert!(problems.contains("unknown parameter \"my-spam\", did you mean \"my-span\"?"), "{problems}");
+}

@@ -10,7 +10,7 @@ use crate::model::vector::distance;
 /// Contacts of several pairs that all begin with an interference deeper than it is from one pair to the next, one warning
 /// for each. No fit is so tight.
 pub fn of_contacts(scenario: &Scenario, structure: &Structure) -> Vec<Warning> {
-    let position = |pair: &Pair| structure.nodes[pair.node].position;
+    let position = |pair: &Pair| pair.at_place(|node| structure.nodes[node].position);
     let depth = |pair: &Pair| match pair.law.gap() {
         Some(Number::Value(gap)) => -gap,
         _ => 0.0,

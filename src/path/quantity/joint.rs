@@ -1,5 +1,7 @@
 //! Resultants of the contacts of edges and faces.
 
+use std::collections::HashMap;
+
 use super::facts::Facts;
 use super::value::NoValue;
 use crate::answer::record::PairState;
@@ -97,7 +99,15 @@ impl Facts<'_> {
             }
             let middle = 0.5 * lengths[lengths.len() - 1];
             let index = |id: &str| id.strip_prefix(joint)?.strip_prefix('[')?.strip_suffix(']')?.parse::<usize>().ok();
-            return pairs.iter().map(|pair| Some(lengths.get(index(&pair.id)?)? - middle)).collect();
+            // at its node, or between two
+            let of_node =
+                |node: usize| [edge.nodes.iter().position(|&own| own == node).map_or(f64::NAN, |k| lengths[k])];
+            let between: HashMap<&str, f64> = (structure.pairs.iter())
+                .filter(|pair| pair.contact() == joint && pair.place.len() > 1)
+                .map(|pair| (pair.id.as_str(), pair.at_place(of_node)[0]))
+                .collect();
+            let along = |id: &str| between.get(id).copied().or_else(|| lengths.get(index(id)?).copied());
+            return pairs.iter().map(|pair| Some(along(&pair.id)? - middle)).collect();
         }
         let place = |pair: &&PairState| pair.position.map(|at| at[0]);
         let ends = pairs.first().and_then(place).zip(pairs.last().and_then(place));

@@ -260,7 +260,7 @@ impl Painter<'_> {
             .map(|ray| ray.direction.pairs());
         let mut places = Vec::with_capacity(shown.pairs().len());
         for (index, (pair, now)) in self.structure.pairs.iter().zip(shown.pairs()).enumerate() {
-            let (x, y) = self.dot(pair.node);
+            let (x, y) = self.view.place(self.displaced.at_pair(pair));
             if !self.view.holds((x, y)) {
                 places.push(None);
                 continue;

@@ -6,6 +6,7 @@ use super::depth::{Depths, Line, Seen};
 use super::skeleton::Skeleton;
 use crate::fem::ElasticCurves;
 use crate::model::edge::EdgeSide;
+use crate::model::pair::Pair;
 use crate::model::plate::Plate;
 use crate::model::structure::{Element, Structure};
 use crate::model::vector::{cross, distance, dot, length, unit, way};
@@ -94,6 +95,11 @@ impl<'a> Displaced<'a> {
     /// Place of a node in the picture, in the unit of the coordinates: to the right and up.
     pub fn at(&self, node: usize) -> (f64, f64) {
         self.projection.flat(self.place(node))
+    }
+
+    /// That of a pair.
+    pub fn at_pair(&self, pair: &Pair) -> (f64, f64) {
+        self.projection.flat(pair.at_place(|node| self.place(node)))
     }
 
     fn ring(&self, nodes: impl Iterator<Item = usize>) -> Vec<Seen> {

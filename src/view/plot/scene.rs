@@ -195,7 +195,7 @@ impl Scene {
         let mark = |(index, pair): (usize, &Pair)| {
             let state = picture.pairs.and_then(|states| states.get(index));
             PairMark {
-                place: at(pair.node),
+                place: displaced.at_pair(pair),
                 is_hidden: displaced.hides(pair.node),
                 id: pair.id.clone(),
                 state: state.map(|state| state.state),

@@ -237,34 +237,6 @@ fn the_friction_limit_is_exact_on_quadratic_sides() {
     }
 }
 
-/// Where the other edge ends inside a side, the last pair has the traction of one function up to that end: the block tilts
-/// when its weight passes the place at which that traction stands.
-#[test]
-fn a_block_that_hangs_over_tilts_about_its_last_pair() {
-    // Nodes at 0.5, 1, 1.5, 2, 2.5 over a block that ends at 1.75: Ψ = 3t − 1 from 1 to 1.5, then 1 up to 1.75.
-    let moment = 0.5 * (0.5 + 0.5 * (1.0 - 0.5)) + 0.25 * 1.625;
-    let tilts_at = moment / (0.25 + 0.25);
-    let plate = |id: &str, x: f64, y: f64, width: f64, divisions: u32| {
-        json!({"id": id, "origin": [x, y], "size": [width, 1], "divisions": [divisions, 2], "thickness": 1,
-               "material": "m", "plane": "stress"})
-    };
-    let case = Case::json(json!({
-        "materials": {"m": {"E": E, "nu": NU}},
-        "parameters": {"s": 0},
-        "plates": [plate("lower", 0.0, -1.0, 1.75, 3), plate("upper", 0.5, 0.0, 2.0, 4)],
-        "supports": [{"at": "lower.bottom", "fixed": ["x", "y"]}],
-        "contacts": [{"id": "joint", "edge": "upper.bottom", "against": "lower.top", "friction": 0.5}],
-        "loads": {"weight": {"items": [{"point": {"at": "upper[2,2]", "force": [0, -3]}}]},
-                  "more": {"factor": "s", "items": [{"point": {"at": "upper[4,2]", "force": [0, -1]}}]}}
-    }));
-    // (3 · 1.5 + s · 2.5) / (3 + s) = tilts_at
-    let limit = 3.0 * (tilts_at - 1.5) / (2.5 - tilts_at);
-    let stands = case.solve(&[("s", limit * (1.0 - 1e-8))]);
-    is_answer(&stands);
-    close("the last pair", stands.pairs[2].x_n, 3.0 + limit, 1e-6);
-    mechanism(&case.solve(&[("s", limit * (1.0 + 1e-8))]));
-}
-
 /// One side of an edge along x: its ends, and its nodes as indices into the edge.
 struct Side {
     ends: [f64; 2],
@@ -297,7 +269,7 @@ fn integral(a: f64, b: f64, of: &dyn Fn(f64) -> f64) -> f64 {
 }
 
 /// The weights of every node of `own`, first those of `own`, then those of `other`, by integrals over the pieces between
-/// all corners of both; `None` at nodes beyond `other`.
+/// all corners of both; `None` at nodes beyond `other`, but for the next one.
 fn by_common_refinement(own: &[Side], other: &[Side], counts: [usize; 2]) -> Vec<Option<[Vec<f64>; 2]>> {
     let reach = [other[0].ends[0], other[other.len() - 1].ends[1]];
     let mut rows = vec![[vec![0.0; counts[0]], vec![0.0; counts[1]]]; counts[0]];
@@ -311,16 +283,29 @@ fn by_common_refinement(own: &[Side], other: &[Side], counts: [usize; 2]) -> Vec
             continue;
         }
         let near = 1e-9;
-        let facing: Vec<usize> =
-            (0..all.len()).filter(|&k| (t(from) - near..=t(to) + near).contains(&all[k])).collect();
-        let through: Vec<f64> = facing.iter().map(|&k| all[k]).collect();
-        let n = facing.len();
+        let mut facing: Vec<(usize, f64)> = (0..all.len())
+            .filter(|&k| (t(from) - near..=t(to) + near).contains(&all[k]))
+            .map(|k| (side.nodes[k], all[k]))
+            .collect();
+        // An end of the other edge inside the side has the number of the node beyond.
+        let before = (0..all.len()).rfind(|&k| all[k] < t(from) - near);
+        let after = (0..all.len()).find(|&k| all[k] > t(to) + near);
+        facing.extend(before.map(|k| (side.nodes[k], t(from))));
+        facing.extend(after.map(|k| (side.nodes[k], t(to))));
+        facing.sort_by(|a, b| a.1.total_cmp(&b.1));
         let over = |of: &dyn Fn(f64) -> f64| integral(from, to, &|x| of(t(x)));
+        // No function whose integral is not positive: a uniform pressure would pull there.
+        let through: Vec<f64> = facing.iter().map(|place| place.1).collect();
+        if through.len() == 3 && (0..3).any(|i| over(&|t| lagrange(&through, i, t)) <= 1e-3 * (to - from)) {
+            facing.remove(1);
+        }
+        let (numbers, through): (Vec<usize>, Vec<f64>) = facing.into_iter().unzip();
+        let n = through.len();
         let mass = DMatrix::from_fn(n, n, |i, j| over(&|t| lagrange(&through, i, t) * lagrange(&through, j, t)));
         let sizes = DVector::from_fn(n, |i, _| over(&|t| lagrange(&through, i, t)));
         let inverse = mass.try_inverse().expect("independent functions");
         for i in 0..n {
-            let node = side.nodes[facing[i]];
+            let node = numbers[i];
             faces[node] = true;
             let dual = |t: f64| (0..n).map(|j| sizes[i] * inverse[(i, j)] * lagrange(&through, j, t)).sum::<f64>();
             for (k, &own_node) in side.nodes.iter().enumerate() {
