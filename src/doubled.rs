@@ -178,7 +178,8 @@ mod tests {
                 numbers.iter().map(|(a, b, scale)| (a * f64::from(*scale).exp2(), *b)).unzip();
             if cancels {
                 let negative: Vec<f64> = a.iter().map(|a| -a * (1.0 + 1e-15)).collect();
-                (a.extend(negative), b.extend(b.clone()));
+                a.extend(negative);
+                b.extend_from_within(..);
             }
             let (sum, magnitude) = halved_sums(&a, &b);
             let rational = |x: f64| BigRational::from_float(x).unwrap();

@@ -81,12 +81,11 @@ pub fn run_patiently<T: Send + 'static>(
     found.ok_or_else(|| WorkerError::Panicked("it left no result".to_owned()))
 }
 
-/// As [`run_patiently`]; the job leaves its result where its caller finds it. Compiled once, not for every kind of result.
-fn run_boxed(
-    watch: &dyn Watch,
-    patience: Duration,
-    job: Box<dyn FnOnce(&dyn Watch) + Send>,
-) -> Result<(), WorkerError> {
+/// Work that leaves its result where its caller finds it.
+type Job = Box<dyn FnOnce(&dyn Watch) + Send>;
+
+/// As [`run_patiently`], compiled once, not for every kind of result.
+fn run_boxed(watch: &dyn Watch, patience: Duration, job: Job) -> Result<(), WorkerError> {
     if watch.stop() {
         return Err(WorkerError::Interrupted);
     }

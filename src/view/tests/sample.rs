@@ -428,6 +428,7 @@ fn ground_pair(id: &str, node: usize) -> Pair {
     Pair {
         id: id.into(),
         node,
+        place: vec![(node, 1.0)],
         weights: Pair::of_nodes(node, None),
         normal: [0.0, 1.0, 0.0],
         tangents: vec![[1.0, 0.0, 0.0]],
