@@ -143,10 +143,12 @@ fn release_torsion(structure: &mut Structure) {
 /// A node that nothing holds or connects would move freely: reported at its name.
 fn report_loose_nodes(builder: &Builder<'_>, fields: &Fields<'_>) {
     let structure = &builder.structure;
+    // One that could not be read was told of already.
+    let are_written = |key| !entries(fields, key).is_empty();
     if structure.superelement.is_none()
         && structure.elements.is_empty()
-        && structure.springs.is_empty()
-        && structure.rigid.is_empty()
+        && !are_written("springs")
+        && !are_written("rigid")
     {
         let message = match structure.dimension {
             Dimension::Plane => {

@@ -275,7 +275,7 @@ fn differences_need_no_blanks() {
     let text = |nodes: &str| {
         format!(
             r#"{{"format": "stickslip/1", "title": "t", "parameters": {{"L": 4, "b": 1, "my-span": 7}}, "nodes": {{{nodes}}},
-                "springs": [{{"at": "A", "direction": "y", "stiffness": 1}}], "supports": [{{"at": "A", "fixed": ["x"]}}],
+                "springs": [{{"at": "A", "direction": [0, 1], "stiffness": 1}}], "supports": [{{"at": "A", "fixed": ["x"]}}],
                 "contacts": [{{"id": "c", "node": "A", "against": "ground", "normal": [0, 1], "friction": 0}}], "loads": {{}}}}"#
         )
     };
@@ -293,4 +293,14 @@ fn differences_need_no_blanks() {
     }
     let problems = load_text("t", &text(r#""A": ["my-spam", 0]"#), None).expect_err("no such name").to_string();
     assert!(problems.contains("unknown parameter \"my-spam\", did you mean \"my-span\"?"), "{problems}");
+}
+
+/// A spring that could not be read is told of; that there is nothing beside it is not.
+#[test]
+fn what_could_not_be_read_is_not_missing() {
+    let text = r#"{"format": "stickslip/1", "title": "t", "nodes": {"A": [0, 0]}, "supports": [{"at": "A", "fixed": ["x"]}],
+        "springs": [{"at": "A", "direction": [0, 1], "stiffness": -2}], "loads": {},
+        "contacts": [{"id": "c", "node": "A", "against": "ground", "normal": [0, 1], "friction": 0}]}"#;
+    let problems = load_text("t", text, None).expect_err("a negative stiffness").to_string();
+    assert!(problems.contains("springs[0].stiffness") && !problems.contains("no elements"), "{problems}");
 }
