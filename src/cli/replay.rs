@@ -21,7 +21,7 @@ pub struct Replay {
     /// Text, or one JSON object per command
     #[arg(long, value_enum, default_value_t = Form::Text)]
     format: Form,
-    /// Go on after a command that fails
+    /// Go on after a command that fails (a script that `source` runs ends at its first one all the same)
     #[arg(long)]
     keep_going: bool,
     /// Say each command before its result

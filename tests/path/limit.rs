@@ -110,3 +110,20 @@ fn a_free_portal_slides_or_turns_over_however_stiff_it_is() {
         }
     }
 }
+
+/// Two points on a common track, pressed elastically by 1 each: they slide at h = 0.1 + 0.3. No motion certifies it (sliding does
+/// not open the springs), but the run just beyond tries every basis.
+#[test]
+fn what_a_run_beside_the_limit_proves_is_said_of_the_limit() {
+    let mut track = read(
+        r#"{ "format": "stickslip/1", "title": "track", "contact_system": { "pairs": ["c1", "c2"],
+             "stiffness": [[2, 0, 0, 0], [0, 2, 0, 0], [0, 0, 1, -1], [0, 0, -1, 1]], "kernel": [[0, 0, 1, 1]],
+             "loads": { "w": { "vector": [1, 1, 0, 0] }, "h": { "vector": [0, 0, 0, 1] } }, "friction": [0.1, 0.3] } }"#,
+    );
+    let found = report(&mut track, "limit h").unwrap();
+    let limit = found["limit"].as_f64().expect("a limit");
+    assert!((limit - 0.4).abs() <= 1e-12, "{found}");
+    assert_eq!(found["collapse"]["verdict"], "proved", "{found}");
+    // At one load, not at all beyond.
+    assert!(text(&mut track, "limit h").contains("whether loads beyond it can be carried is not proved"));
+}

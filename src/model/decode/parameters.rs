@@ -67,8 +67,9 @@ pub fn read(cursor: Cursor<'_>, under: &Under<'_>) -> Parameters {
                     .parameters()
                     .map(|name| format!("{name} = {}", parameters.values.get(name).copied().unwrap_or(f64::NAN)))
                     .collect();
+                let at = if of.is_empty() { String::new() } else { format!(" at {}", of.join(", ")) };
                 draft.cursor.problem(
-                    format!("the formula {} is not a finite number at {}", draft.cursor.quoted(), of.join(", ")),
+                    format!("the formula {} is not a finite number{at}", draft.cursor.quoted()),
                     "change the formula or the values of its parameters",
                 );
                 *parameter = None;

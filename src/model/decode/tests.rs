@@ -292,7 +292,7 @@ fn differences_need_no_blanks() {
         assert_eq!(structure.nodes[0].position[0], expected, "{written}");
     }
     let problems = load_text("t", &text(r#""A": ["my-spam", 0]"#), None).expect_err("no such name").to_string();
-    assert!(problems.contains("unknown parameter \"my-spam\", did you mean \"my-span\"?"), "{problems}");
+    assert!(problems.contains("unknown parameter \"my-spam\" (did you mean \"my-span\"?)"), "{problems}");
 }
 
 /// A spring that could not be read is told of; that there is nothing beside it is not.

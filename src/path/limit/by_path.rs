@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::record::{BESIDE, Limit, beside, size};
+use crate::answer::record::Verdict;
 use crate::contact::problem::ContactProblem;
 use crate::explain::ray;
 use crate::lcp::problem::NOISE;
@@ -70,6 +71,11 @@ fn look_beside(limit: &mut Limit, path: &LoadPath, case: Case<'_>, negative: boo
     ray::explain(&mut collapse, &problem, there.built());
     let mut collapse = collapse.record(system, Covering::default());
     collapse.p = 0.0;
+    // Where no motion proves it, the run beside the limit may have shown that there is no answer there.
+    if !collapse.verdict.is_some_and(Verdict::is_proof) {
+        let shown = above.answer.ray.as_ref().and_then(|ray| ray.verdict).filter(|verdict| verdict.is_proof());
+        collapse.verdict = shown.or(collapse.verdict);
+    }
     limit.put_collapse(collapse);
     Ok(())
 }
