@@ -18,7 +18,8 @@ pub fn tributary_lengths(structure: &Structure) -> Vec<Option<f64>> {
     for (joint, pairs) in joints(structure) {
         let edge = structure.edge_contacts.iter().find(|edge| edge.id == joint);
         if let Some(known) = edge.filter(|edge| !edge.shares.is_empty()) {
-            pairs.iter().for_each(|&(pair, index)| lengths[pair] = Some(known.shares[index]));
+            let share = |index: usize| Some(known.shares[index]).filter(|share| *share > 0.0);
+            pairs.iter().for_each(|&(pair, index)| lengths[pair] = share(index));
             continue;
         }
         let nodes: Vec<usize> = match edge {

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use stickslip::answer::record::State;
 use stickslip::path::stages::{History, HistoryEnd, StageResult, follow};
 
-use crate::common::{Case, near, near_all};
+use crate::common::{Case, lines, near, near_all};
 
 fn followed(case: &Case) -> History {
     let values = case.scenario.parameter_values();
@@ -17,6 +17,7 @@ fn followed(case: &Case) -> History {
 }
 
 /// A node on springs k along x and y, on a floor with friction f, before a stop across y at a distance with friction of its own.
+#[derive(Clone, Copy)]
 struct Slider {
     k: f64,
     weight: f64,
@@ -84,26 +85,31 @@ fn most_that_holds(floor: [f64; 2], stop: [f64; 2]) -> f64 {
 #[test]
 fn a_slider_at_a_stop_follows_what_pulls_it_along() {
     let mut rng = ChaCha8Rng::seed_from_u64(11);
-    for round in 0..12 {
-        let slider = Slider {
-            k: rng.random_range(0.5..4.0),
-            weight: rng.random_range(5.0..20.0),
-            friction: rng.random_range(0.05..0.5),
-            gap: if round % 3 == 0 { 0.0 } else { rng.random_range(0.1..1.0) },
-            at_stop: if round % 2 == 0 { 0.0 } else { rng.random_range(0.05..0.5) },
-        };
-        let turned = if round % 4 < 2 { 0.0 } else { rng.random_range(-3.0..3.0) };
-        let Slider { k, weight, friction, gap, at_stop } = slider;
-        let against = friction * weight + k * gap + rng.random_range(1.0..5.0);
+    let rounds: Vec<(Slider, f64, f64, f64)> = (0..12)
+        .map(|round| {
+            let slider = Slider {
+                k: rng.random_range(0.5..4.0),
+                weight: rng.random_range(5.0..20.0),
+                friction: rng.random_range(0.05..0.5),
+                gap: if round % 3 == 0 { 0.0 } else { rng.random_range(0.1..1.0) },
+                at_stop: if round % 2 == 0 { 0.0 } else { rng.random_range(0.05..0.5) },
+            };
+            let turned = if round % 4 < 2 { 0.0 } else { rng.random_range(-3.0..3.0) };
+            let against = slider.friction * slider.weight + slider.k * slider.gap + rng.random_range(1.0..5.0);
+            let most = slider.friction * slider.weight + slider.at_stop * (against - slider.k * slider.gap);
+            (slider, turned, against, most * rng.random_range(2.1..4.0))
+        })
+        .collect();
+    lines::side_by_side(&rounds, |(slider, turned, against, along)| {
+        let (Slider { k, weight, friction, gap, at_stop }, turned, against, along) = (*slider, *turned, *against, *along);
         let pressed = against - k * gap;
         let most = friction * weight + at_stop * pressed;
-        let along = most * rng.random_range(2.1..4.0);
         let history = slider.history(
             turned,
             json!([{ "weight": 1 }, { "weight": 1, "against": against }, { "weight": 1, "against": against, "along": along },
                    { "weight": 1, "against": against }]),
         );
-        let what = format!("round {round}: k {k} W {weight} f {friction} g {gap} f2 {at_stop} Y {against} X {along}");
+        let what = format!("k {k} W {weight} f {friction} g {gap} f2 {at_stop} Y {against} X {along}");
         assert_eq!(history.end, HistoryEnd::Complete, "{what}");
         let far = (along - most) / k;
         let size = far + gap;
@@ -128,7 +134,7 @@ fn a_slider_at_a_stop_follows_what_pulls_it_along() {
             near(&what, stop.x_n, pressed, 1e-8, weight);
             assert_eq!(floor.state, State::Slip, "{what}");
         }
-    }
+    });
 }
 
 /// Sliding at an angle against a guide: friction then has to turn at its bound without a slip before the node can slide along.
