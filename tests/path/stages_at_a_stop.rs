@@ -101,7 +101,8 @@ fn a_slider_at_a_stop_follows_what_pulls_it_along() {
         })
         .collect();
     lines::side_by_side(&rounds, |(slider, turned, against, along)| {
-        let (Slider { k, weight, friction, gap, at_stop }, turned, against, along) = (*slider, *turned, *against, *along);
+        let (Slider { k, weight, friction, gap, at_stop }, turned, against, along) =
+            (*slider, *turned, *against, *along);
         let pressed = against - k * gap;
         let most = friction * weight + at_stop * pressed;
         let history = slider.history(
