@@ -79,7 +79,9 @@ fn read_words<'w>(
     };
     lies_there(entry, names)?;
     let argument = |rest: &'w [String]| match rest.split_first() {
-        Some((argument, rest)) if !argument.is_empty() => Ok((argument.clone(), rest)),
+        Some((argument, rest)) if !argument.is_empty() && !argument.starts_with(['=', '<', '>', '!']) => {
+            Ok((argument.clone(), rest))
+        }
         _ => error(format!(
             "`{}` of what? Write `{} {}`{}",
             entry.word,
@@ -449,6 +451,7 @@ mod tests {
             ("x_n c9", "no pair `c9`"),
             ("x_n joint[*]", "put sum, max or min before it"),
             ("x_n", "`x_n` of what? Write `x_n PAIR`"),
+            ("x_n = 3", "`x_n` of what? Write `x_n PAIR`"),
             ("F2", "`F2` is a parameter, not a quantity of the answer: `params` shows its value"),
             ("M CD", "no bar `CD`"),
             ("M AB at x", "`x` is not a distance"),
