@@ -39,6 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         stiffness: DMatrix::from_row_slice(2, 2, &[2.0, 1.5, 1.5, 2.0]),
         loads: vec![JointLoad::exactly("load".to_owned(), DVector::from_row_slice(&[1.0, -2.0]))],
         rounded: false,
+        groups: Vec::new(),
         kernel: DMatrix::zeros(2, 0),
         corrected: None,
         force_form: None,

@@ -109,6 +109,7 @@ pub fn with_repeated(system: ContactSystem, dependence: &Dependence<'_>) -> Cont
         })
         .collect();
     ContactSystem {
+        groups: Vec::new(),
         stiffness: mixed,
         loads: dependence.loads(system.loads),
         kernel: orthonormal(&motions, k),

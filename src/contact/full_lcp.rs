@@ -46,16 +46,22 @@ fn stiffness_in<T: Scalar>(problem: &ContactProblem) -> Vec<Vec<T>> {
 
 /// Forms the LCP, see the [module documentation](self).
 pub fn full_lcp<T: Scalar>(problem: &ContactProblem, covering: Covering) -> Lcp<T> {
-    full_lcp_of(problem, covering, &stiffness_in(problem))
+    let stiffness = stiffness_in::<T>(problem);
+    let constants = problem.constants_with(&|i, j| stiffness[i][j].clone());
+    full_lcp_of(problem, covering, &stiffness, &constants)
 }
 
-/// Forms the LCP with an R of its own, one row per joint, in place of that of the system.
-pub fn full_lcp_of<T: Scalar>(problem: &ContactProblem, covering: Covering, stiffness: &[Vec<T>]) -> Lcp<T> {
+/// Forms the LCP with an R of its own, one row per joint, and RF − R·(g, 0), in place of those of the problem.
+pub fn full_lcp_of<T: Scalar>(
+    problem: &ContactProblem,
+    covering: Covering,
+    stiffness: &[Vec<T>],
+    constants: &[T],
+) -> Lcp<T> {
     let system = &*problem.system;
     let rows = rows(system, problem.polygon);
     let moved: Vec<Vec<(usize, T)>> = rows.iter().map(|row| displacement(problem, *row)).collect();
     let combinations: Vec<(Vec<(usize, T)>, T)> = rows.iter().map(|row| combination(problem, *row)).collect();
-    let constants = problem.constants_with(&|i, j| stiffness[i][j].clone());
     let matrix = combinations
         .iter()
         .map(|(terms, _)| {

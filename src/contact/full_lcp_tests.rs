@@ -48,6 +48,7 @@ fn with_tangents(stiffness: DMatrix<f64>, tangents: usize) -> ContactSystem {
             .collect(),
         kernel: DMatrix::zeros((1 + tangents) * m, 0),
         rounded: false,
+        groups: Vec::new(),
         corrected: None,
         force_form: None,
         yielding: None,

@@ -13,7 +13,7 @@ use crate::doubled::{dot, sum_of_products};
 use stickslip_numerics::products::{halved_sums, roundings, subtract_square};
 
 /// A row of A z below this share of its terms is zero by the digits of A.
-const DIGITS: f64 = 64.0 * f64::EPSILON;
+pub const DIGITS: f64 = 64.0 * f64::EPSILON;
 /// A remaining pivot (of a diagonal of 1) up to this is examined: it may be zero.
 const NEARLY: f64 = 1e-10;
 /// Columns that are subtracted from the rest at once.

@@ -8,7 +8,7 @@ use nalgebra::DVector;
 
 use super::law::PairLaw;
 use super::problem::ContactProblem;
-use super::sum::Sum;
+use super::sum::{LAW_ROUNDING, Sum};
 use super::system::ContactSystem;
 use crate::lcp::problem::NOISE;
 
@@ -18,7 +18,7 @@ fn root(system: &ContactSystem, joint: usize) -> f64 {
 }
 
 /// λ = R (z − (g, 0)) + RF over the joints; of joints in force form z is λ and λ is z. Where R is
-/// [`rounded`](ContactSystem::rounded), √(R_ii R_kk) stands for |R_ik| in the magnitudes.
+/// [`rounded`](ContactSystem::rounded), √(R_ii R_kk) stands for |R_ik| of one group in the magnitudes.
 pub fn joint_forces(problem: &ContactProblem, z: &DVector<f64>) -> Vec<Sum> {
     state_forces(problem, z).joints
 }
@@ -57,7 +57,7 @@ fn condensed_forces(problem: &ContactProblem, z: &DVector<f64>) -> Vec<Sum> {
         .zip(&problem.load_terms)
         .map(|(value, magnitude)| Sum { value: *value, magnitude: *magnitude })
         .collect();
-    let mut scaled = 0.0;
+    let mut scaled = vec![0.0; system.groups.iter().max().map_or(1, |last| last + 1)];
     for k in 0..system.joint_count() {
         let mut gap = problem.laws.get(k).map_or(0.0, PairLaw::gap);
         if system.is_forced(k) {
@@ -72,7 +72,7 @@ fn condensed_forces(problem: &ContactProblem, z: &DVector<f64>) -> Vec<Sum> {
         }
         let column = system.stiffness.column(k);
         if system.rounded && !system.is_forced(k) {
-            scaled += root(system, k) * size;
+            scaled[system.group(k)] += root(system, k) * size;
             for (i, (force, entry)) in forces.iter_mut().zip(column.iter()).enumerate() {
                 force.value += entry * moved;
                 if system.is_forced(i) {
@@ -86,11 +86,18 @@ fn condensed_forces(problem: &ContactProblem, z: &DVector<f64>) -> Vec<Sum> {
             }
         }
     }
-    if scaled > 0.0 {
+    if scaled.iter().any(|scaled| *scaled > 0.0) {
         let felt = forces.iter_mut().enumerate().filter(|(i, _)| !system.is_forced(*i));
-        felt.for_each(|(i, force)| force.magnitude += root(system, i) * scaled);
+        felt.for_each(|(i, force)| force.magnitude += root(system, i) * scaled[system.group(i)]);
     }
     forces
+}
+
+/// What rounding can have made of the force of each joint where nothing moves: a limit on paper may lie as far beside the
+/// stored numbers.
+pub fn rounding_at_rest(problem: &ContactProblem) -> Vec<f64> {
+    let forces = joint_forces(problem, &DVector::zeros(problem.system.joint_count()));
+    forces.iter().map(|force| LAW_ROUNDING * force.magnitude).collect()
 }
 
 /// What the laws bound from below in a pair: each ≥ 0 in an answer.

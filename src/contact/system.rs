@@ -110,6 +110,9 @@ pub struct ContactSystem {
     /// Whether the entries of R are results of a condensation, each known to a few ε √(R_ii R_kk) only: a true zero is
     /// stored as noise. Otherwise they are data, exact to the last digit.
     pub rounded: bool,
+    /// Of each joint the group in which joints feel one another: between two groups R is zero, not rounding. Empty where all
+    /// may feel one another.
+    pub groups: Vec<usize>,
     /// Orthonormal basis Z of the kernel of R, k × r (r = 0 when the structure stands without its contacts).
     pub kernel: DMatrix<f64>,
     /// R with the kernel exact, where that differs from `stiffness`: what the pivots work on.
@@ -164,10 +167,23 @@ impl ContactSystem {
 
     /// Magnitude up to which an entry of R is the rounding of a zero, in its unit; 0 where the entries are data.
     pub fn entry_noise(&self, i: usize, j: usize) -> f64 {
-        if !self.rounded {
+        if !self.rounded || self.group(i) != self.group(j) {
             return 0.0;
         }
         NOISE * (self.stiffness[(i, i)] * self.stiffness[(j, j)]).max(0.0).sqrt()
+    }
+
+    /// The group of a joint.
+    pub fn group(&self, joint: usize) -> usize {
+        self.groups.get(joint).copied().unwrap_or(0)
+    }
+
+    /// Whether R and RF are the numbers of a file, or condensed from them exactly: then the data are known to the last digit.
+    pub fn has_exact_data(&self) -> bool {
+        match &self.file {
+            Some(file) => !file.compliance,
+            None => !self.rounded && self.force_form.is_none() && self.yielding.is_none(),
+        }
     }
 
     /// Whether joints repeat one another: an answer need not exist then where the structure stands.

@@ -45,6 +45,7 @@ pub fn yielding(exact: ContactSystem) -> ContactSystem {
         stiffness,
         loads,
         rounded: true,
+        groups: Vec::new(),
         kernel: exact.kernel.clone(),
         corrected: None,
         force_form: None,

@@ -45,16 +45,17 @@ fn corners(tangents: usize) -> Vec<Vec<f64>> {
 }
 
 /// Looks for a certificate until `end`; the pairs are those of the problem, with the friction that is to be proved too small.
-pub(super) fn certify_exactly(problem: &ContactProblem, pairs: &[ConePair], end: Instant) -> CertificateSearch {
+/// `None` where the data are not exact, or too many.
+pub(super) fn certify_exactly(problem: &ContactProblem, pairs: &[ConePair], end: Instant) -> Option<CertificateSearch> {
     let system = &*problem.system;
-    if system.file.is_none() || system.pair_count() > MOST_PAIRS || system.kernel.ncols() == 0 {
-        return CertificateSearch::default();
+    if !system.has_exact_data() || system.pair_count() > MOST_PAIRS || system.kernel.ncols() == 0 {
+        return None;
     }
     let exact = ExactSystem::new(problem);
     let mut whole = WholeRows::default();
     exact.stiffness.iter().for_each(|row| whole.push_rational(row));
     let Some(motions) = null_space(&whole.rows, &mut |_| until(end)) else {
-        return CertificateSearch { certificate: None, out_of_time: true };
+        return Some(CertificateSearch { certificate: None, out_of_time: true });
     };
     let rows = program(&exact, pairs, &motions);
     let free: Vec<usize> = (0..motions.len()).collect();
@@ -62,8 +63,8 @@ pub(super) fn certify_exactly(problem: &ContactProblem, pairs: &[ConePair], end:
     let mut polyhedron = Polyhedron::new(columns, rows, &free);
     match polyhedron.restore(&mut || until(end).is_continue()) {
         State::Feasible => {}
-        State::Empty => return CertificateSearch::default(),
-        State::Stopped => return CertificateSearch { certificate: None, out_of_time: true },
+        State::Empty => return Some(CertificateSearch::default()),
+        State::Stopped => return Some(CertificateSearch { certificate: None, out_of_time: true }),
     }
     let direction: Vec<BigRational> = (0..system.joint_count())
         .map(|joint| (0..motions.len()).map(|k| polyhedron.value(k) * &motions[k][joint]).sum())
@@ -81,7 +82,7 @@ pub(super) fn certify_exactly(problem: &ContactProblem, pairs: &[ConePair], end:
         of_this_load: false,
         amounts: Vec::new(),
     };
-    CertificateSearch { certificate: Some(certificate), out_of_time: false }
+    Some(CertificateSearch { certificate: Some(certificate), out_of_time: false })
 }
 
 /// The inequalities over y, one v for every pair with cohesion or a known bound, and the constant.

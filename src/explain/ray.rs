@@ -16,7 +16,8 @@ use super::remedy::digits;
 use super::sliding::sliding;
 use crate::answer::record::{Direction, PairDirection, Ray, RayClass, Verdict};
 use crate::contact::problem::ContactProblem;
-use crate::contact::schemes::enumerate::{Enumeration, enumerate};
+use crate::contact::schemes::enumerate::Enumeration;
+use crate::contact::schemes::near::enumerate_to_rounding;
 use crate::contact::system::{ContactSystem, JointLoad};
 use crate::contact::written::ContactLcp;
 use crate::fem::MainSystem;
@@ -201,7 +202,7 @@ pub fn report(problem: &ContactProblem, built: Built<'_>, contact: &ContactLcp, 
     report.record(&problem.system, Covering::default())
 }
 
-/// Goes through all working schemes; `None` where that takes too many steps or the search was stopped.
+/// Goes through all working schemes, of rounded data within their rounding; `None` where that takes too many steps or the search was stopped.
 pub fn all_answers(problem: &ContactProblem, watch: &dyn Watch) -> Option<Enumeration> {
     let system = &*problem.system;
     let pairs = system.pairs.len();
@@ -210,7 +211,7 @@ pub fn all_answers(problem: &ContactProblem, watch: &dyn Watch) -> Option<Enumer
     }
     let most = MOST_STEPS / (2 * pairs as u64).pow(3).max(1);
     let mut steps = 0;
-    let found = enumerate(problem, &mut |_| {
+    let found = enumerate_to_rounding(problem, &mut |_| {
         steps += 1;
         if steps > most || watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });

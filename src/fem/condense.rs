@@ -9,6 +9,7 @@ use super::contrast;
 use super::dof::Dofs;
 use super::error::MainSystemError;
 use super::kernel::{self, RigidKernel};
+use super::links::LoadTerms;
 use super::loose::Motion;
 use super::main_system::MainSystem;
 use super::refinement::{Field, Verdict};
@@ -23,6 +24,9 @@ use crate::watch::Watch;
 /// of it, in the field of every load and in that of a dislocation.
 const MOST_LOSS: f64 = 1e-12;
 
+/// What rounding makes of a sum of a few terms, as a share of these.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 impl MainSystem {
     /// R, RF and their kernel, from the f64 factor if its rounding costs little, otherwise in doubled precision.
     pub(super) fn condense(
@@ -36,7 +40,7 @@ impl MainSystem {
         }
         self.doubled = None;
         self.r = self.factor.schur(d);
-        kernel::project(&mut self.r, &self.z);
+        self.project();
         self.take_loads(structure, watch)
     }
 
@@ -53,6 +57,12 @@ impl MainSystem {
         self.condense_doubled(!is_right, structure, watch)
     }
 
+    /// Makes the kernel of R exact.
+    pub(super) fn project(&mut self) {
+        kernel::project(&mut self.r, &self.z);
+        self.links.part(&mut self.r);
+    }
+
     /// RF in doubled precision, which takes a few solutions; R too if it is asked for, which takes one for each column.
     fn condense_doubled(
         &mut self,
@@ -63,7 +73,7 @@ impl MainSystem {
         if with_r {
             let r = self.refinement(structure, watch)?.stiffness(watch)?;
             self.r = r.ok_or_else(|| contrast::refusal(structure))?;
-            kernel::project(&mut self.r, &self.z);
+            self.project();
         }
         self.amplification = 1.0;
         self.take_loads_doubled(structure, watch)
@@ -102,9 +112,23 @@ impl MainSystem {
 
     fn balance_loads(&mut self) {
         let motions = &self.motions[..self.rigid.coefficients.nrows()];
-        for (rf, f) in std::iter::zip(&mut self.rf, &self.f) {
-            balance(rf, &self.rigid, motions, f, &self.dofs);
+        let terms: Vec<LoadTerms> = std::iter::zip(&self.rf, self.driving_forces())
+            .map(|(rf, driving)| self.links.load_terms(&self.dofs, &self.elimination, &driving, rf))
+            .collect();
+        let mut all = Vec::with_capacity(terms.len());
+        for ((rf, f), LoadTerms { mut terms, size, are_far }) in std::iter::zip(&mut self.rf, &self.f).zip(terms) {
+            // Forces of joints that repeat one another are shared anew, small ones made of large ones.
+            let are_far = are_far && self.repeated.is_empty();
+            if !are_far {
+                terms.fill(size);
+            }
+            if balance(rf, &self.rigid, motions, (f, &self.dofs), are_far.then_some(&terms)) && are_far {
+                // The correction of the largest has come to all.
+                terms.fill(size);
+            }
+            all.push(terms);
         }
+        self.rf_terms = all;
     }
 
     /// Σ|u||K||u| over uᵀ K u, the largest over the load cases on the main system and a random dislocation that is not
@@ -162,7 +186,7 @@ impl MainSystem {
         if !refined {
             self.doubled = None;
         }
-        kernel::project(&mut self.r, &self.z);
+        self.project();
         Ok(())
     }
 
@@ -214,13 +238,36 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     std::iter::zip(a, b).map(|(a, b)| a * b).sum()
 }
 
-/// On the motions of loose parts RF is known exactly: uᵀ (Bᵀ RF + F) = 0. Puts that right to the last digit.
-fn balance(rf: &mut DVector<f64>, rigid: &RigidKernel, motions: &[Motion], f: &[f64], dofs: &Dofs) {
+/// On the motions of loose parts RF is known exactly: uᵀ (Bᵀ RF + F) = 0. Puts that right to the last digit. Of joints that
+/// are reached by far less than others `terms` tells the magnitudes: as long as RF is right by these, no joint is changed by more
+/// than the rounding of its own. Whether changes may have been larger.
+fn balance(
+    rf: &mut DVector<f64>,
+    rigid: &RigidKernel,
+    motions: &[Motion],
+    (f, dofs): (&[f64], &Dofs),
+    terms: Option<&DVector<f64>>,
+) -> bool {
     if motions.is_empty() {
-        return;
+        return false;
     }
-    let work = motions.iter().map(|motion| -dot(&dofs.gather(&motion.u), f));
-    let work = DVector::from_iterator(motions.len(), work);
+    let moved: Vec<Vec<f64>> = motions.iter().map(|motion| dofs.gather(&motion.u)).collect();
+    let work = DVector::from_iterator(moved.len(), moved.iter().map(|u| -dot(u, f)));
     let error = rigid.coefficients.transpose() * work - rigid.z.transpose() * &*rf;
-    *rf += &rigid.z * error;
+    let mut change = &rigid.z * &error;
+    let mut is_rounding = false;
+    if let Some(terms) = terms {
+        let sizes = moved.iter().map(|u| u.iter().zip(f).map(|(u, f)| (u * f).abs()).sum());
+        let sizes = DVector::from_iterator(moved.len(), sizes);
+        let rounding = rigid.coefficients.abs().transpose() * sizes + rigid.z.abs().transpose() * terms;
+        is_rounding = error.iter().zip(&rounding).all(|(error, size)| error.abs() <= ROUNDING * size);
+        let swamps = |change: f64, terms: f64| is_rounding && change.abs() > ROUNDING * terms;
+        change.zip_apply(terms, |change: &mut f64, terms| {
+            if swamps(*change, terms) {
+                *change = 0.0;
+            }
+        });
+    }
+    *rf += change;
+    !is_rounding
 }

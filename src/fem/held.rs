@@ -9,7 +9,7 @@ use super::contrast::Stiffnesses;
 use super::error::MainSystemError;
 use super::factor::Factor;
 use super::kinematics::Kinematics;
-use super::main_system::largest_force;
+use super::links::largest_force;
 use super::order::Places;
 use super::outline::Outline;
 use crate::model::structure::Structure;

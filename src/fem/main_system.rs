@@ -19,6 +19,7 @@ use super::elimination::Elimination;
 use super::error::MainSystemError;
 use super::factor::Factor;
 use super::kernel::{self, RigidKernel};
+use super::links::Links;
 use super::loads::{load_vectors, settlements};
 use super::loose::{Motion, loose_motions};
 use super::order::Places;
@@ -80,6 +81,9 @@ pub struct MainSystem {
     pub(super) c: Vec<Coupling>,
     pub(super) r: DMatrix<f64>,
     pub(super) rf: Vec<DVector<f64>>,
+    /// What the entries of RF were summed from.
+    pub(super) rf_terms: Vec<DVector<f64>>,
+    pub(super) links: Links,
     pub(super) z: DMatrix<f64>,
     /// The kernel of the first of the motions; internal ones follow.
     pub(super) rigid: RigidKernel,
@@ -135,6 +139,7 @@ impl MainSystem {
             }
         }
         let node = elimination.nodes(&dofs);
+        let links = Links::new(&main);
         let coordinates: Vec<[f64; 3]> = structure.nodes.iter().map(|node| node.position).collect();
         let places = Places { node: &node, coordinates: &coordinates, last: &last };
         let factor = Factor::new(&mut main.k_m, &main.c, places, joints.len(), watch)?;
@@ -155,6 +160,8 @@ impl MainSystem {
             c: main.c,
             r: DMatrix::zeros(0, 0),
             rf: Vec::new(),
+            rf_terms: Vec::new(),
+            links,
             z: rigid.z.clone(),
             coefficients: rigid.coefficients.clone(),
             rigid,
@@ -285,9 +292,14 @@ impl MainSystem {
         &self.rf
     }
 
-    /// Largest nodal force or joint force of each load case per unit factor: what rounding in its RF is measured by.
-    pub fn load_sizes(&self) -> Vec<f64> {
-        std::iter::zip(self.driving_forces(), &self.rf).map(|(f, rf)| largest_force(&self.dofs, &f, rf)).collect()
+    /// Magnitudes that each entry of RF of each load case was summed from, per unit factor: what its rounding is measured by.
+    pub fn load_terms(&self) -> &[DVector<f64>] {
+        &self.rf_terms
+    }
+
+    /// Of each joint the group in which joints feel one another: between two of them R is zero.
+    pub fn groups(&self) -> &[usize] {
+        &self.links.stiffness
     }
 
     /// Numbers of unknowns.
@@ -304,10 +316,4 @@ impl MainSystem {
     pub fn factor_entries(&self) -> usize {
         self.factor.stored()
     }
-}
-
-/// Largest nodal force of driving forces f, or joint force of the RF that they give.
-pub(super) fn largest_force(dofs: &Dofs, f: &[f64], rf: &DVector<f64>) -> f64 {
-    let nodal = std::iter::zip(f, dofs.is_rotation()).filter(|(_, rotation)| !rotation).map(|(f, _)| f.abs());
-    nodal.fold(rf.amax(), f64::max)
 }

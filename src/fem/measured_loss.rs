@@ -10,7 +10,6 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::error::MainSystemError;
-use super::kernel;
 use super::main_system::MainSystem;
 use super::refinement::Field;
 use crate::model::structure::Structure;
@@ -75,7 +74,7 @@ impl MainSystem {
                     self.r[(i, j)] += sizes[i] * sizes[j] * (change[(i, j)] + change[(j, i)]);
                 }
             }
-            kernel::project(&mut self.r, &self.z);
+            self.project();
         }
         Ok(false)
     }

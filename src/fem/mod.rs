@@ -54,6 +54,7 @@ mod idle_spins;
 mod joint_rows;
 mod kernel;
 mod kinematics;
+mod links;
 mod loads;
 mod loose;
 mod measured_loss;

@@ -6,6 +6,7 @@ use nalgebra::DVector;
 
 use super::cold::Extent;
 use super::error::{QuestionError, SolveError};
+use super::finish::excuse_hidden;
 use super::plain::plain_answer;
 use super::plain_answers::{Effort, all_plain_answers};
 use super::prepared::{Geometry, Prepared};
@@ -15,7 +16,8 @@ use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules, Plain
 use crate::answer::record::PairDirection;
 use crate::contact::lcp::contact_lcp;
 use crate::contact::problem::ContactProblem;
-use crate::contact::schemes::enumerate::{Continuum as ContactContinuum, EnumeratedAnswer, enumerate};
+use crate::contact::schemes::enumerate::{Continuum as ContactContinuum, EnumeratedAnswer};
+use crate::contact::schemes::near::enumerate_to_rounding;
 use crate::contact::schemes::scheme::PairScheme;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
@@ -49,6 +51,8 @@ pub struct AllAnswers {
     pub total: u64,
     /// Schemes that could not be decided.
     pub undecided: u64,
+    /// Whether the numbers as stored have none, but it is open whether some lie within their rounding.
+    pub within_rounding: bool,
     /// In space: the facets of the polygon whose answers these are.
     pub facets: Option<usize>,
 }
@@ -75,7 +79,7 @@ pub enum Moving {
 impl AllAnswers {
     /// Whether it is proved that there is none.
     pub fn none(&self) -> bool {
-        self.complete && self.undecided == 0 && self.answers.is_empty()
+        self.complete && self.undecided == 0 && self.answers.is_empty() && !self.within_rounding
     }
 }
 
@@ -106,30 +110,33 @@ impl Prepared {
         let problem = contact_problem(system, &factors(self, values), values).under(Rules { cone: false, ..rules });
         let facets = system.is_in_space().then(|| problem.polygon.facets());
         let mut steps = 0u64;
-        let found = enumerate(&problem, &mut |progress| {
+        let found = enumerate_to_rounding(&problem, &mut |progress| {
             steps += 1;
             if steps.is_multiple_of(64) {
                 watch.progress(&format!("{} schemes, {} answers", progress.nodes, progress.found), progress.share);
             }
             watch.go_on()
         });
-        if found.no_answer() {
+        if found.no_answer() || found.within_rounding {
             // At what is a limit on paper, the stored numbers may lie just beyond it.
-            let near = self.attempt_contact(&problem, (Rules::default(), Extent::Whole), watch)?;
-            if near.answer.is_answer() {
-                return Ok(AllAnswers {
-                    answers: vec![near],
-                    exact: vec![false],
-                    continuum: vec![false],
-                    continua: Vec::new(),
-                    complete: true,
-                    visited: found.visited,
-                    cut: found.cut,
-                    total: found.total,
-                    undecided: 0,
-                    facets,
-                });
+            let mut near = vec![self.attempt_contact(&problem, (Rules::default(), Extent::Whole), watch)?];
+            for candidate in &found.answers {
+                near.push(self.enumerated_answer(&problem, candidate)?);
             }
+            let answers: Vec<Solved> = near.into_iter().filter(|near| near.answer.is_answer()).take(1).collect();
+            return Ok(AllAnswers {
+                exact: vec![false; answers.len()],
+                continuum: vec![false; answers.len()],
+                continua: Vec::new(),
+                complete: found.complete,
+                visited: found.visited,
+                cut: found.cut,
+                total: found.total,
+                undecided: 0,
+                within_rounding: found.within_rounding && answers.is_empty(),
+                facets,
+                answers,
+            });
         }
         let answers = found
             .answers
@@ -155,6 +162,7 @@ impl Prepared {
             cut: found.cut,
             total: found.total,
             undecided: found.undecided,
+            within_rounding: false,
             facets,
         })
     }
@@ -188,7 +196,11 @@ impl Prepared {
         }
         let point = Point { w: vec![0.0; z.len()], z, p: 0.0 };
         let rules = AttemptRules::from(Rules::default()).by(AttemptEngine::Enumeration);
-        self.answer_at(problem, contact, point, rules, Extent::Whole)
+        let mut solved = self.answer_at(problem, contact, point, rules, Extent::Whole)?;
+        if system.has_exact_data() {
+            excuse_hidden(&mut solved.answer);
+        }
+        Ok(solved)
     }
 }
 
@@ -227,6 +239,7 @@ fn all_of_plain(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<AllAnswers,
         cut: found.cut,
         total: 1u64.checked_shl(lcp.size() as u32).unwrap_or(u64::MAX),
         undecided: found.undecided,
+        within_rounding: false,
         facets: None,
     })
 }

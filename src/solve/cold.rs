@@ -8,6 +8,7 @@ use super::cone;
 use super::engines::{EXACT_PAIRS, keep_scheme, run_exact_contact, run_tableau};
 use super::error::SolveError;
 use super::finish::empty_answer;
+use super::ladder::{EXACT_BUDGET, within};
 use super::plain::{PlainProblem, solve_plain_judged};
 use super::prepared::{Geometry, Prepared};
 use super::state::{LookedAt, Rest, RunData, Solved};
@@ -108,12 +109,24 @@ impl Prepared {
             return Ok(solved);
         }
         solved = solved.completed();
-        if solved.answer.check.passed {
-            return Ok(solved);
-        }
         let mut strict = contact;
         Arc::make_mut(&mut strict.lcp).scale.load = Some(0.0);
-        self.run_contact(problem, strict, (rules, extent), watch)
+        if !solved.answer.check.passed {
+            return self.run_contact(problem, strict, (rules, extent), watch);
+        }
+        let system = &problem.system;
+        if system.has_exact_data() && system.turning_pairs() <= EXACT_PAIRS {
+            // Exact data may say that nothing of p is left after all.
+            let exact = Rules { engine: Engine::Exact, ..rules };
+            let attempt = |watch: &dyn Watch| self.run_contact(problem, strict, (exact, extent), watch);
+            if let Some(again) = within(EXACT_BUDGET, watch, attempt)?
+                && again.answer.is_answer()
+                && !again.answer.marginal
+            {
+                return Ok(again);
+            }
+        }
+        Ok(solved)
     }
 
     fn run_contact(

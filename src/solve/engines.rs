@@ -5,7 +5,6 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use num_rational::BigRational;
-use num_traits::{One, Zero};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -13,19 +12,18 @@ use crate::answer::attempt::PlainCovering;
 use crate::answer::record::OutcomeKind;
 use crate::contact::full_lcp::full_lcp_of;
 use crate::contact::problem::ContactProblem;
-use crate::contact::system::ContactSystem;
+use crate::contact::schemes::exact_system::ExactSystem;
 use crate::contact::written::ContactLcp;
-use crate::explain::kernel::clean;
 use crate::lcp::basis_solution::{direction, vertex};
 use crate::lcp::driver::{Engine, run};
-use crate::lcp::exact::dyadic::{nearest, rational, rational_rows};
+use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::exact::lemke::Exact;
 use crate::lcp::exact::tableau::Tableau;
 use crate::lcp::lemke::SchemeEngine;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::{Outcome, Point, RayDirection, Run};
 use crate::lcp::parametric::Parametric;
-use crate::lcp::pivot::{Pivot, PivotLog};
+use crate::lcp::pivot::Pivot;
 use crate::lcp::problem::{Lcp, Scale};
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::variable::Variable;
@@ -200,8 +198,8 @@ pub fn run_exact_plain(lcp: &MirroredLcp, rule: TieRule, watch: &dyn Watch) -> R
     rounded(run_exact(problem, rule, watch), 1.0, 1.0)
 }
 
-/// Runs the tableau of a contact problem in exact rationals; M is formed in rationals from R, RF, f, c, g, and R is
-/// first freed of its rounded kernel, so that a motion that costs nothing costs exactly nothing.
+/// Runs the tableau of a contact problem in exact rationals: M is formed from the R and RF that enumeration works on, so
+/// that a motion that costs nothing costs exactly nothing.
 pub fn run_exact_contact(
     problem: &ContactProblem,
     contact: &ContactLcp,
@@ -209,98 +207,14 @@ pub fn run_exact_contact(
     rule: TieRule,
     watch: &dyn Watch,
 ) -> Run {
-    let Some(stiffness) = exact_stiffness(&problem.system, watch) else {
-        return Run { outcome: Outcome::Interrupted, pivots: PivotLog::default(), point: Point::default() };
-    };
-    let mut lcp = full_lcp_of(problem, covering, &stiffness);
+    let ExactSystem { stiffness, constants, .. } = ExactSystem::new(problem);
+    let mut lcp = full_lcp_of(problem, covering, &stiffness, &constants);
     lcp.scale.load = contact.lcp.scale.load.map(|load| load * contact.force_unit);
     rounded(run_exact(lcp, rule, watch), contact.force_unit, contact.length_unit)
 }
 
 fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run<BigRational> {
     watched(&mut Exact::new(problem, rule, watch), "exact arithmetic", watch)
-}
-
-/// R in rationals with Z exactly in its kernel: P R P, P = 1 − Z (ZᵀZ)⁻¹ Zᵀ; `None` if it was stopped.
-pub fn exact_stiffness(system: &ContactSystem, watch: &dyn Watch) -> Option<Vec<Vec<BigRational>>> {
-    let k = system.joint_count();
-    let r = rational_rows(&system.stiffness);
-    let free = system.kernel.ncols();
-    if free == 0 {
-        return Some(r);
-    }
-    // Entries of Z that are rounding noise would only blur motions that are exactly simple.
-    let z = rational_rows(&clean(&system.kernel));
-    let dot = |a: &dyn Fn(usize) -> BigRational, b: &dyn Fn(usize) -> BigRational| {
-        let mut sum = BigRational::zero();
-        for i in 0..k {
-            sum += a(i) * b(i);
-        }
-        sum
-    };
-    let gram: Vec<Vec<BigRational>> =
-        (0..free).map(|a| (0..free).map(|b| dot(&|i| z[i][a].clone(), &|i| z[i][b].clone())).collect()).collect();
-    let Some(inverse) = inverse(gram, watch)? else {
-        return Some(r); // dependent columns: an orthonormal basis has none
-    };
-    let going_on = || (!watch.stop()).then_some(());
-    // Q = Z (ZᵀZ)⁻¹, P = 1 − Q Zᵀ.
-    let projector: Vec<Vec<BigRational>> = (0..k)
-        .map(|i| {
-            going_on()?;
-            let q: Vec<BigRational> = (0..free).map(|b| (0..free).map(|a| &z[i][a] * &inverse[a][b]).sum()).collect();
-            let row = (0..k).map(|j| {
-                let inside: BigRational = (0..free).map(|b| &q[b] * &z[j][b]).sum();
-                if i == j { BigRational::one() - inside } else { -inside }
-            });
-            Some(row.collect())
-        })
-        .collect::<Option<_>>()?;
-    let times = |a: &[Vec<BigRational>], b: &[Vec<BigRational>]| -> Option<Vec<Vec<BigRational>>> {
-        a.iter()
-            .map(|row| {
-                going_on()?;
-                let entry = |j: usize| -> BigRational {
-                    row.iter()
-                        .zip(b)
-                        .filter(|(x, row)| !x.is_zero() && !row[j].is_zero())
-                        .map(|(x, row)| x * &row[j])
-                        .sum()
-                };
-                Some((0..k).map(entry).collect())
-            })
-            .collect()
-    };
-    times(&projector, &times(&r, &projector)?)
-}
-
-/// Inverse by Gauss–Jordan; `None` if it was stopped, `Some(None)` where singular.
-fn inverse(mut a: Vec<Vec<BigRational>>, watch: &dyn Watch) -> Option<Option<Vec<Vec<BigRational>>>> {
-    let n = a.len();
-    for (i, row) in a.iter_mut().enumerate() {
-        row.extend((0..n).map(|j| if i == j { BigRational::one() } else { BigRational::zero() }));
-    }
-    for c in 0..n {
-        if watch.stop() {
-            return None;
-        }
-        let Some(pivot) = (c..n).find(|&r| !a[r][c].is_zero()) else {
-            return Some(None);
-        };
-        a.swap(c, pivot);
-        let factor = a[c][c].recip();
-        a[c].iter_mut().for_each(|v| *v *= &factor);
-        let row = a[c].clone();
-        for (r, other) in a.iter_mut().enumerate() {
-            if r != c && !other[c].is_zero() {
-                let factor = other[c].clone();
-                for (v, p) in other.iter_mut().zip(&row) {
-                    *v -= &factor * p;
-                }
-            }
-        }
-    }
-    Some(Some(a.into_iter().map(|row| row[n..].to_vec()).collect()))
 }
 
 /// An exact run in f64, forces divided by `force` and displacements by `length` (powers of two).

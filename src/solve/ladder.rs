@@ -220,7 +220,7 @@ impl Solved {
 ///
 /// # Errors
 /// Those of the attempt; stopped from outside.
-fn within<T>(
+pub(super) fn within<T>(
     budget: Duration,
     watch: &dyn Watch,
     attempt: impl FnOnce(&dyn Watch) -> Result<T, SolveError>,

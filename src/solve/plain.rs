@@ -14,7 +14,7 @@ use super::state::{LookedAt, RunData, Solved};
 use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules, PlainCovering};
 use crate::answer::check::TOLERANCE;
 use crate::answer::check_plain::{ROW_ROUNDING, check_plain};
-use crate::answer::record::{OutcomeKind, PlainSolution, Size, Verdict};
+use crate::answer::record::{OutcomeKind, PlainSolution, Ray, Size, Verdict};
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::sentence;
 use crate::lcp::exact::dyadic::nearest;
@@ -29,8 +29,6 @@ use crate::watch::{Budget, Watch};
 
 /// What is said of the answers where nothing was proved.
 const UNKNOWN: &str = "For a general M this proves nothing about whether one exists.";
-/// What is said where all bases were tried.
-const ALL_BASES: &str = "Proved: every complementary basis was tried in exact arithmetic, none is an answer.";
 /// Finds z of an LCP of some class, which the caller checks; `None` where it is not of that class, or none was found.
 type Special = fn(&MirroredLcp, &dyn Watch) -> Result<Option<Vec<f64>>, SolveError>;
 /// Ways to an answer that fit the data of some LCPs only, and what is said of it.
@@ -215,10 +213,8 @@ fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn
     let budget = Budget::new(watch, EXACT_BUDGET);
     let found = all_plain_answers(&problem.lcp, Effort::Brief, &budget);
     let too_long = budget.ran_out() && found.as_ref().is_some_and(|found| !found.complete);
-    if found.as_ref().is_some_and(PlainAnswers::none)
-        && let Some(ray) = &first.plain_ray
-    {
-        first.answer.ray = Some(ray.record(Verdict::Proved, ALL_BASES));
+    if let Some(proof) = proof_by_all_bases(found.as_ref(), &first) {
+        first.answer.ray = Some(proof);
         return Ok(first);
     }
     if few && first.plain_ray.is_some() {
@@ -276,8 +272,8 @@ fn by_all_bases(
         return Ok(answer);
     }
     let mut first = ladder.without_answer();
-    if let Some(ray) = first.plain_ray.as_ref().filter(|_| found.none() && first.answer.ray.is_some()) {
-        first.answer.ray = Some(ray.record(Verdict::Proved, ALL_BASES));
+    if let Some(proof) = proof_by_all_bases(Some(&found), &first).filter(|_| first.answer.ray.is_some()) {
+        first.answer.ray = Some(proof);
     }
     Ok(first)
 }
@@ -328,11 +324,18 @@ fn prove_in_time(lcp: &MirroredLcp, watch: &dyn Watch) -> (Option<RayProof>, boo
     (proof, given_up)
 }
 
+/// What is said of a ray where all bases were tried in exact arithmetic and none is an answer.
+fn proof_by_all_bases(found: Option<&PlainAnswers>, solved: &Solved) -> Option<Ray> {
+    let ray = solved.plain_ray.as_ref().filter(|_| found.is_some_and(PlainAnswers::none))?;
+    let said = "Proved: every complementary basis was tried in exact arithmetic, none is an answer.";
+    Some(ray.record(Verdict::Proved, said))
+}
+
 /// Replaces the ray by a proof that there is no answer; whether there is such a proof.
 fn prove_ray(solved: &mut Solved, problem: &PlainProblem, found: Option<&PlainAnswers>, watch: &dyn Watch) -> bool {
     let Some(ray) = &solved.plain_ray else { return false };
-    let record = if found.is_some_and(PlainAnswers::none) {
-        ray.record(Verdict::Proved, ALL_BASES)
+    let record = if let Some(proof) = proof_by_all_bases(found, solved) {
+        proof
     } else if let (Some(proof @ RayProof::Infeasible(_)), _) = prove_in_time(&problem.lcp, watch) {
         proof.record(ray, problem.names)
     } else {

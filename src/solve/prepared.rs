@@ -145,7 +145,9 @@ pub fn prepare_at(scenario: &Scenario, values: &ParameterValues, watch: &dyn Wat
 /// Gives an error of a given contact system its place in the file.
 fn given_problem(scenario: &Scenario, error: GivenError) -> PrepareError {
     let path = match &error {
-        GivenError::Indefinite { key, .. } => format!("contact_system.{key}"),
+        GivenError::Indefinite { key, .. }
+        | GivenError::NegativeDiagonal { key, .. }
+        | GivenError::NegativeMinor { key, .. } => format!("contact_system.{key}"),
         GivenError::Held { .. } | GivenError::NearlySingular { .. } => "contact_system.compliance".to_owned(),
         GivenError::Unheld { case, .. } => format!("contact_system.loads.{case}"),
     };
@@ -223,12 +225,12 @@ fn problems_at(scenario: &Scenario, all: impl Iterator<Item = (String, String)>)
 
 /// RF of every load case with its name and the magnitude of its terms.
 fn joint_loads(structure: &Structure, main: &MainSystem) -> Vec<JointLoad> {
-    let cases = structure.load_cases.iter().zip(main.loads()).zip(main.load_sizes());
+    let cases = structure.load_cases.iter().zip(main.loads()).zip(main.load_terms());
     cases
-        .map(|((case, vector), size)| JointLoad {
+        .map(|((case, vector), terms)| JointLoad {
             name: case.name.clone(),
             // A joint far from the load carries the rounding of forces that pass elsewhere.
-            terms: vector.map(|force| force.abs().max(size)),
+            terms: vector.zip_map(terms, |force, terms| force.abs().max(terms)),
             vector: vector.clone(),
         })
         .collect()
@@ -291,6 +293,7 @@ fn prepare_structure(scenario: &Scenario, structure: &Structure, watch: &dyn Wat
         stiffness: main.stiffness().clone(),
         loads,
         rounded: true,
+        groups: main.groups().to_vec(),
         kernel: main.kernel().clone(),
         corrected: None,
         force_form: None,

@@ -196,7 +196,14 @@ impl Job<'_> {
         }
         if let Some(found) = found {
             let state = |candidate| self.prepared.enumerated_answer(self.problem, candidate);
-            let note = others(found.answers.len(), !found.continua.is_empty(), true);
+            let note = if found.within_rounding {
+                Some(
+                    "it holds within the rounding of the data; as they are stored no working scheme is an answer"
+                        .to_owned(),
+                )
+            } else {
+                others(found.answers.len(), !found.continua.is_empty(), true)
+            };
             if let Some(answer) = ladder.first_answer(found.answers.iter().map(state), note)? {
                 return Ok(answer);
             }
@@ -223,7 +230,7 @@ impl Job<'_> {
                     mark_proved(solved);
                     String::new()
                 }
-                Some(found) if !found.answers.is_empty() => {
+                Some(found) if !found.answers.is_empty() && !found.within_rounding => {
                     " An answer exists: going through all working schemes finds it (`enumerate`).".to_owned()
                 }
                 _ => format!(" The default rules ({words}) find no answer either."),

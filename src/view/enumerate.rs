@@ -79,6 +79,9 @@ fn count(all: &AllAnswers) -> String {
         return format!("infinitely many answers: {pieces} with {}{apart}", many(inside, "corner"));
     }
     match answers {
+        0 if all.within_rounding => {
+            "no answer of the numbers as stored; whether there is one within their rounding is open".to_owned()
+        }
         0 if all.none() => "no answer: proved by going through all of them".to_owned(),
         0 => "no answer found".to_owned(),
         1 if all.exact == [false] => {

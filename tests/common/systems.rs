@@ -29,6 +29,7 @@ pub fn coulomb(stiffness: DMatrix<f64>, load: DVector<f64>, friction: f64) -> Co
         stiffness,
         loads: vec![JointLoad::exactly("load".into(), load)],
         rounded: false,
+        groups: Vec::new(),
         corrected: None,
         force_form: None,
         yielding: None,

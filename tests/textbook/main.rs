@@ -11,6 +11,7 @@ mod cantilever_gap;
 mod contact_system;
 mod edge_cases;
 mod elements;
+mod far_apart;
 mod foundation;
 mod foundations;
 mod frame;

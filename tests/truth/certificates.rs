@@ -73,6 +73,7 @@ fn random_loose(rng: &mut ChaCha8Rng, m: usize) -> ContactProblem {
         stiffness,
         loads,
         rounded: true,
+        groups: Vec::new(),
         kernel,
         corrected: None,
         force_form: None,

@@ -3,10 +3,40 @@
 /// Why a given contact system cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GivenError {
+    /// A joint that answers its own motion with a push.
+    #[error(
+        "the {} matrix is not positive semidefinite: its diagonal entry for {joint} is {value:.3e}, which must be 0 or more",
+        name(key)
+    )]
+    NegativeDiagonal {
+        /// Key of the file.
+        key: &'static str,
+        /// The joint in words.
+        joint: String,
+        /// The entry.
+        value: f64,
+    },
+    /// Two joints whose common entry is larger than their own ones allow.
+    #[error(
+        "the {} matrix is not positive semidefinite: its entry for {} and {} is {entry:.17e}, and the two diagonal entries allow \
+         no more than √(a b) = {bound:.17e}; the digits of the file leave no room for the difference",
+        name(key), joints[0], joints[1]
+    )]
+    NegativeMinor {
+        /// Key of the file.
+        key: &'static str,
+        /// The joints in words.
+        joints: [String; 2],
+        /// Their entry.
+        entry: f64,
+        /// √ of the product of the diagonal entries.
+        bound: f64,
+    },
     /// A matrix with a negative eigenvalue.
     #[error(
         "the {} matrix is not positive semidefinite: scaled to unit diagonal, its smallest eigenvalue is \
-         {smallest:.3e}", if *key == "stiffness" { "contact stiffness" } else { "compliance" }
+         {smallest:.3e}",
+        name(key)
     )]
     Indefinite {
         /// Key of the file.
@@ -40,4 +70,9 @@ pub enum GivenError {
         /// A pair that moves.
         pair: String,
     },
+}
+
+/// The matrix in words.
+fn name(key: &str) -> &'static str {
+    if key == "stiffness" { "contact stiffness" } else { "compliance" }
 }

@@ -1,5 +1,6 @@
 //! A contact system read from a file → joints: tangential joints of frictionless pairs released, kernel exact.
 
+mod definite;
 mod error;
 mod rows;
 mod singular;
@@ -8,11 +9,12 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use self::definite::judge_entries;
 pub use self::error::GivenError;
-use self::rows::{Rows, cleaned, joints_in_words, pairs};
+use self::rows::{Rows, cleaned, joint_name, joints_in_words, pairs};
 use self::singular::{repeated_in_space, singular_compliance};
 use super::file_data::FileData;
-use super::pivoted::{NullSpace, PivotedCholesky, is_null, orthonormal};
+use super::pivoted::{DIGITS, NullSpace, PivotedCholesky, is_null, orthonormal};
 use super::system::{ContactSystem, JointLoad};
 use crate::lcp::problem::NOISE;
 use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
@@ -30,8 +32,16 @@ const SQUARE: usize = 64;
 /// See [`GivenError`].
 pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, Vec<String>), GivenError> {
     match &given.matrix {
-        GivenMatrix::Stiffness(rows) => from_stiffness(given, symmetric(rows)),
-        GivenMatrix::Compliance(rows) => from_compliance(given, symmetric(rows)),
+        GivenMatrix::Stiffness(rows) => {
+            let matrix = symmetric(rows);
+            judge_entries(("stiffness", &matrix), given.kernel.is_none(), &|row| joint_name(given, row))?;
+            from_stiffness(given, matrix)
+        }
+        GivenMatrix::Compliance(rows) => {
+            let matrix = symmetric(rows);
+            judge_entries(("compliance", &matrix), true, &|row| joint_name(given, row))?;
+            from_compliance(given, matrix)
+        }
     }
 }
 
@@ -83,6 +93,13 @@ fn from_stiffness(
         None => {
             let (whole, null) = null_space("stiffness", &matrix)?;
             remarks.extend(null.near.iter().map(|z| nearly_singular(given, z, &whole.scale)));
+            if null.least < -DIGITS * matrix.nrows() as f64 {
+                remarks.push(format!(
+                    "the contact stiffness matrix is not quite positive semidefinite: scaled to unit diagonal it has an eigenvalue of \
+                     {:.1e} or less, which counts as rounding of its entries up to {NEGATIVE:e}",
+                    null.least
+                ));
+            }
             (null.exact, matrix)
         }
     };
@@ -106,6 +123,7 @@ fn from_stiffness(
         stiffness,
         loads,
         rounded,
+        groups: Vec::new(),
         kernel,
         corrected,
         force_form: None,
@@ -222,6 +240,7 @@ fn from_compliance(
         stiffness,
         loads,
         rounded: true,
+        groups: Vec::new(),
         kernel: DMatrix::zeros(k, 0),
         corrected: None,
         force_form: None,

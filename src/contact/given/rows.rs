@@ -81,15 +81,19 @@ pub(super) fn pairs(given: &GivenContactSystem) -> Vec<ContactPair> {
         .collect()
 }
 
+/// `z_n of c1`, `z_t of c2`, in space z_t1 and z_t2: the joint of a row of the matrix.
+pub(super) fn joint_name(given: &GivenContactSystem, row: usize) -> String {
+    let (word, pair) = match row.checked_sub(given.pairs.len()) {
+        None => ("z_n", row),
+        Some(along) if given.tangents == 1 => ("z_t", along),
+        Some(along) => (["z_t1", "z_t2"][along % 2], along / 2),
+    };
+    format!("{word} of {}", given.pairs[pair])
+}
+
 /// `1 z_n of c1, -0.5 z_t of c2`, in space z_t1 and z_t2: the entries of a vector over all joints, largest 1; what is
 /// small after scaling to unit diagonal is left out.
 pub(super) fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64]) -> String {
-    let (m, tangents) = (given.pairs.len(), given.tangents);
-    let joint = |i: usize| match i.checked_sub(m) {
-        None => ("z_n", i),
-        Some(along) if tangents == 1 => ("z_t", along),
-        Some(along) => (["z_t1", "z_t2"][along % 2], along / 2),
-    };
     let sizes: Vec<f64> = z.iter().zip(scale).map(|(z, scale)| (z * scale).abs()).collect();
     let largest = sizes.iter().fold(0.0, |a: f64, b| a.max(*b));
     let named: Vec<usize> = (0..z.len()).filter(|&i| sizes[i] > 1e-6 * largest).collect();
@@ -100,8 +104,7 @@ pub(super) fn joints_in_words(given: &GivenContactSystem, z: &DVector<f64>, scal
         } else {
             format!("{share:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
         };
-        let (word, pair) = joint(i);
-        format!("{share} {word} of {}", given.pairs[pair])
+        format!("{share} {}", joint_name(given, i))
     };
     match named.len() {
         0..=6 => named.iter().map(one).collect::<Vec<_>>().join(", "),

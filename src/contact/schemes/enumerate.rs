@@ -74,12 +74,15 @@ pub struct Enumeration {
     pub undecided: u64,
     /// Whether the search came to its end.
     pub complete: bool,
+    /// Whether there is none of the data as they are stored, but may be one within their rounding; its answers are such
+    /// ([`super::near`]).
+    pub within_rounding: bool,
 }
 
 impl Enumeration {
     /// No answer, and no doubt about it.
     pub fn no_answer(&self) -> bool {
-        self.complete && self.undecided == 0 && self.answers.is_empty()
+        self.complete && self.undecided == 0 && self.answers.is_empty() && !self.within_rounding
     }
 }
 
@@ -95,7 +98,7 @@ pub struct Progress {
 }
 
 /// The states that a pair can be in.
-fn choices(law: &PairLaw, polygon: Polygon) -> Vec<PairScheme> {
+pub(super) fn choices(law: &PairLaw, polygon: Polygon) -> Vec<PairScheme> {
     let all = |open: bool| {
         let states = Tangential::all(polygon).into_iter();
         states.map(move |tangential| PairScheme { open, tangential })
@@ -289,6 +292,7 @@ impl<'a> Search<'a> {
             total: self.choices.iter().fold(1, |total: u64, choices| total.saturating_mul(choices.len() as u64)),
             undecided: *unlisted,
             complete,
+            within_rounding: false,
         }
     }
 

@@ -25,6 +25,8 @@ pub(crate) struct ExactSystem<'a> {
     pub stiffness: Vec<Vec<BigRational>>,
     /// RF − R·(g, 0).
     pub constants: Vec<BigRational>,
+    /// How far the force of each joint may lie from this, either way; empty where it is exact.
+    rooms: Vec<f64>,
 }
 
 /// The variables of a pair in the polyhedron.
@@ -59,6 +61,11 @@ impl<'a> ExactSystem<'a> {
         Self::with(problem, &problem.system.stiffness_without_noise())
     }
 
+    /// λ = R z + constants + e with any e of each joint, |e| ≤ its room.
+    pub fn within(problem: &'a ContactProblem, rooms: &[f64]) -> Self {
+        Self { rooms: rooms.to_vec(), ..Self::new(problem) }
+    }
+
     fn with(problem: &'a ContactProblem, stiffness: &DMatrix<f64>) -> Self {
         let system = &*problem.system;
         let (stored, mut constants) = stored(problem, stiffness);
@@ -67,14 +74,19 @@ impl<'a> ExactSystem<'a> {
             let gap = rational(gap);
             constants.iter_mut().zip(&stiffness).for_each(|(constant, row)| *constant -= &row[k] * &gap);
         }
-        Self { problem, stiffness, constants }
+        Self { problem, stiffness, constants, rooms: Vec::new() }
+    }
+
+    /// Number of the nonbasic variables that a polyhedron starts with: z of all joints, then e + room of those that have one.
+    fn columns(&self) -> usize {
+        self.problem.system.joint_count() + self.rooms.len()
     }
 
     /// Variables: z of all joints, then pair by pair x_n, the reserves of the facets and, in space, the forms of the
     /// slip.
     pub fn variables(&self) -> Vec<PairVariables> {
         let (system, polygon) = (&*self.problem.system, self.problem.polygon);
-        let mut next = system.joint_count();
+        let mut next = self.columns();
         let mut take = |count: usize| {
             next += count;
             (next - count..next).collect::<Vec<_>>()
@@ -96,7 +108,7 @@ impl<'a> ExactSystem<'a> {
     /// and highest displacement) of a box that holds it.
     pub fn polyhedron(&self, sides: &[(usize, f64, f64)], go_on: &mut GoOn) -> (Polyhedron, State) {
         let (system, polygon) = (&*self.problem.system, self.problem.polygon);
-        let k = system.joint_count();
+        let k = self.columns();
         let mut rows = WholeRows::default();
         let mut free: Vec<usize> = system.pairs.iter().flat_map(|pair| pair.tangential.clone()).collect();
         for (i, pair) in system.pairs.iter().enumerate() {
@@ -126,6 +138,11 @@ impl<'a> ExactSystem<'a> {
                 }
             }
         }
+        for (e, room) in self.rooms.iter().enumerate() {
+            let mut row = vec![0.0; k + 1];
+            (row[system.joint_count() + e], row[k]) = (-1.0, 2.0 * room);
+            rows.push(&row);
+        }
         let mut made = Polyhedron::new(k, rows, &free);
         let mut state = made.restore(go_on);
         if state == State::Feasible {
@@ -144,15 +161,18 @@ impl<'a> ExactSystem<'a> {
             terms.push((row.pair, law.friction()));
             fixed = law.fixed_bound();
         }
-        let mut form = vec![BigRational::zero(); self.stiffness.len() + 1];
+        let k = self.stiffness.len();
+        let (mut form, mut constant) = (vec![BigRational::zero(); self.columns()], rational(fixed));
         for (joint, factor) in terms.into_iter().filter(|(_, factor)| *factor != 0.0) {
             let factor = rational(factor);
-            let entries = self.stiffness[joint].iter().chain([&self.constants[joint]]);
-            form.iter_mut().zip(entries).for_each(|(sum, entry)| *sum += &factor * entry);
+            form.iter_mut().zip(&self.stiffness[joint]).for_each(|(sum, entry)| *sum += &factor * entry);
+            constant += &factor * &self.constants[joint];
+            if let Some(room) = self.rooms.get(joint) {
+                constant -= &factor * rational(*room);
+                form[k + joint] += &factor;
+            }
         }
-        if let Some(constant) = form.last_mut() {
-            *constant += rational(fixed);
-        }
+        form.push(constant);
         form
     }
 
@@ -232,14 +252,14 @@ fn stored(problem: &ContactProblem, stiffness: &DMatrix<f64>) -> (Vec<Vec<BigRat
     (file.kept.iter().map(row_of).collect(), file.kept.iter().map(|&i| rows[i][last].clone()).collect())
 }
 
-/// R with Z exactly in its kernel, unless its own digits have it already.
+/// R with Z exactly in its kernel, unless its own digits have as large a kernel already.
 fn with_exact_kernel(system: &ContactSystem, mut stored: Vec<Vec<BigRational>>) -> Vec<Vec<BigRational>> {
     let Some((telling, motions)) = telling_joints(&system.kernel) else {
         return stored;
     };
     let mut whole = WholeRows::default();
     stored.iter().for_each(|row| whole.push_rational(row));
-    if rank_modulo_prime(&whole.rows) + system.kernel.ncols() != system.joint_count() {
+    if rank_modulo_prime(&whole.rows) + system.kernel.ncols() > system.joint_count() {
         let exact = |column: usize| motions.column(column).iter().map(|entry| rational(*entry)).collect();
         give_kernel(&mut stored, &telling, &(0..telling.len()).map(exact).collect::<Vec<_>>());
     }

@@ -7,6 +7,7 @@ pub mod critical;
 pub mod enumerate;
 pub mod exact_check;
 pub(crate) mod exact_system;
+pub mod near;
 mod pruning;
 pub mod scheme;
 

@@ -31,7 +31,7 @@ impl Facts<'_> {
                         "there are infinitely many answers, some next to one another: `enumerate` lists their corners",
                     );
                 }
-                if all.undecided > 0 || !all.exact.iter().all(|exact| *exact) {
+                if all.undecided > 0 || all.within_rounding || !all.exact.iter().all(|exact| *exact) {
                     let found = all.answers.len();
                     let answers = if found == 1 { "answer was" } else { "answers were" };
                     return none(format!("{found} {answers} found, but it is not proved that there are no others"));

@@ -52,6 +52,7 @@ struct AnswersReport<'a> {
     cut: u64,
     total: u64,
     undecided: u64,
+    within_rounding: bool,
     /// Of the polygon whose answers they are, in space.
     #[serde(skip_serializing_if = "Option::is_none")]
     facets: Option<usize>,
@@ -97,6 +98,7 @@ impl<'a> AnswersReport<'a> {
             cut: all.cut,
             total: all.total,
             undecided: all.undecided,
+            within_rounding: all.within_rounding,
             facets: all.facets,
         }
     }
