@@ -221,7 +221,9 @@ pub fn bound(words: &[String], values: &ParameterValues) -> Result<Bound, Expect
         None => (rest, None),
     };
     if value.trim().is_empty() {
-        return Err(ExpectationSyntax { what: format!("a number, or a formula of the parameters, is missing after `{text}`") });
+        return Err(ExpectationSyntax {
+            what: format!("a number, or a formula of the parameters, is missing after `{text}`"),
+        });
     }
     let value = finite(value)?;
     let tolerance = match tolerance {
