@@ -115,8 +115,8 @@ impl Prepared {
             return self.run_contact(problem, strict, (rules, extent), watch);
         }
         let system = &problem.system;
-        if system.has_exact_data() && system.turning_pairs() <= EXACT_PAIRS {
-            // Exact data may say that nothing of p is left after all.
+        if system.has_exact_data() && !system.is_in_space() && system.turning_pairs() <= EXACT_PAIRS {
+            // Exact data may say that nothing of p is left after all; in space they are of the polygon only.
             let exact = Rules { engine: Engine::Exact, ..rules };
             let attempt = |watch: &dyn Watch| self.run_contact(problem, strict, (exact, extent), watch);
             if let Some(again) = within(EXACT_BUDGET, watch, attempt)?
