@@ -202,7 +202,8 @@ pub fn report(problem: &ContactProblem, built: Built<'_>, contact: &ContactLcp, 
     report.record(&problem.system, Covering::default())
 }
 
-/// Goes through all working schemes, of rounded data within their rounding; `None` where that takes too many steps or the search was stopped.
+/// Goes through all working schemes, of rounded data within their rounding; `None` where that takes too many steps or the
+/// search was stopped.
 pub fn all_answers(problem: &ContactProblem, watch: &dyn Watch) -> Option<Enumeration> {
     let system = &*problem.system;
     let pairs = system.pairs.len();

@@ -155,16 +155,9 @@ mod tests {
         let mut structure = Structure::default();
         for (index, &(position, normal)) in pairs.iter().enumerate() {
             structure.nodes.push(Node { id: format!("n{index}"), position: flat(position) });
-            structure.pairs.push(Pair {
-                id: format!("c{index}"),
-                node: index,
-                place: vec![(index, 1.0)],
-                weights: Pair::of_nodes(index, None),
-                normal: flat(normal),
-                tangents: structure.dimension.tangents(flat(normal)),
-                slides_on_ground: false,
-                law: Law::Frictionless { gap: Number::Value(0.0) },
-            });
+            let law = Law::Frictionless { gap: Number::Value(0.0) };
+            let id = format!("c{index}");
+            structure.pairs.push(Pair::at_node(id, index, None, flat(normal), structure.dimension, law));
         }
         structure.rigid.push(RigidBody { id: "body".into(), nodes: (0..pairs.len()).collect() });
         joint_numbers(&structure)

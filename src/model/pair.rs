@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::dimension::Dimension;
 use super::parameter::Number;
 
 /// A law without its numbers: the word that files and results have for it.
@@ -151,6 +152,20 @@ pub struct Pair {
 }
 
 impl Pair {
+    /// Of a node with another one, or with the ground, with the tangents of its normal.
+    pub fn at_node(
+        id: String,
+        node: usize,
+        against: Option<usize>,
+        normal: [f64; 3],
+        dimension: Dimension,
+        law: Law,
+    ) -> Pair {
+        let tangents = dimension.tangents(normal);
+        let weights = Pair::of_nodes(node, against);
+        Pair { id, node, place: vec![(node, 1.0)], weights, normal, tangents, slides_on_ground: false, law }
+    }
+
     /// The id of the contact that it comes from: `joint` of `joint[0]`.
     pub fn contact(&self) -> &str {
         self.id.split('[').next().unwrap_or(&self.id)

@@ -354,16 +354,16 @@ impl Prepared {
         let geometry = match (&*self.geometry, &scenario.source) {
             (Geometry::Structure { system, main, structure: before }, Source::Structure(structure)) => {
                 // The laws with the joints that they have in this main system.
-                let structure = &Structure { pairs: before.pairs.clone(), ..structure.clone() };
+                let structure = Structure { pairs: before.pairs.clone(), ..structure.clone() };
                 let main =
-                    main.with_loads(structure).map_err(|error| main_system_problem(scenario, structure, error))?;
-                let loads = dependence(&main).loads(joint_loads(structure, &main));
+                    main.with_loads(&structure).map_err(|error| main_system_problem(scenario, &structure, error))?;
+                let loads = dependence(&main).loads(joint_loads(&structure, &main));
                 let system = match &system.yielding {
                     Some(made) => yielding(ContactSystem { loads, ..ContactSystem::clone(&made.exact) }),
                     None => ContactSystem { loads, ..ContactSystem::clone(system) },
                 };
                 let system = Arc::new(system);
-                Geometry::Structure { system, main: Box::new(main), structure: structure.clone() }
+                Geometry::Structure { system, main: Box::new(main), structure }
             }
             (Geometry::Contact { system, remarks }, Source::ContactSystem(given)) => {
                 let system = Arc::new(with_loads(system, given).map_err(|error| given_problem(scenario, error))?);

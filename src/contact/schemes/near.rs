@@ -62,9 +62,14 @@ type Flow = ControlFlow<Option<EnumeratedAnswer>>;
 
 impl Search<'_, '_> {
     fn first(&mut self) -> Flow {
-        let sides: Vec<(usize, f64, f64)> = Vec::new();
-        let (polyhedron, state) = self.exact.polyhedron(&sides, &mut || true);
-        if state == State::Feasible { self.descend(&polyhedron, &mut Vec::new()) } else { Flow::Continue(()) }
+        let progress = Progress { nodes: self.nodes, share: 1.0, found: 0 };
+        let mut go_on = || (self.observer)(progress).is_continue();
+        let (polyhedron, state) = self.exact.polyhedron(&[], &mut go_on);
+        match state {
+            State::Feasible => self.descend(&polyhedron, &mut Vec::new()),
+            State::Empty => Flow::Continue(()),
+            State::Stopped => Flow::Break(None),
+        }
     }
 
     /// Pair by pair; `above` is the program of the pairs in `scheme`.

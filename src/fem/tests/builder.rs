@@ -131,18 +131,8 @@ impl Model {
     pub fn pair(&mut self, node: usize, against: Option<usize>, normal: [f64; 2], law: Law) {
         let id = format!("c{}", self.0.pairs.len() + 1);
         let length = normal[0].hypot(normal[1]);
-        let (weights, normal) = (Pair::of_nodes(node, against), flat(normal.map(|n| n / length)));
-        let tangents = self.0.dimension.tangents(normal);
-        self.0.pairs.push(Pair {
-            id,
-            node,
-            place: vec![(node, 1.0)],
-            weights,
-            normal,
-            tangents,
-            slides_on_ground: false,
-            law,
-        });
+        let normal = flat(normal.map(|n| n / length));
+        self.0.pairs.push(Pair::at_node(id, node, against, normal, self.0.dimension, law));
     }
 
     pub fn case(&mut self, loads: Vec<Load>) {

@@ -231,17 +231,7 @@ fn a_block_on_the_ground() {
     let nodes = bricks(&mut model, [1.0, -0.5, 0.0], [3.0, 2.0, 1.0], [3, 2, 2], material, true);
     for &node in &nodes[..12] {
         let (id, normal) = (format!("c{node}"), [0.0, 0.0, 1.0]);
-        let (weights, tangents) = (Pair::of_nodes(node, None), Dimension::Space.tangents(normal));
-        model.0.pairs.push(Pair {
-            id,
-            node,
-            place: vec![(node, 1.0)],
-            weights,
-            normal,
-            tangents,
-            slides_on_ground: false,
-            law: coulomb(),
-        });
+        model.0.pairs.push(Pair::at_node(id, node, None, normal, Dimension::Space, coulomb()));
     }
     let weight = |element: usize| Load::Element { element, load: ElementLoad::Body([0.0, 0.0, -2.0]) };
     model.case((0..model.0.elements.len()).map(weight).collect());

@@ -217,15 +217,7 @@ fn tensionless(builder: &mut Builder<'_>, foundation: &Foundation<'_>, index: us
         }
         None => Law::Frictionless { gap: Number::Value(0.0) },
     };
-    builder.structure.pairs.push(Pair {
-        id,
-        node: at.node,
-        place: vec![(at.node, 1.0)],
-        weights: Pair::of_nodes(at.node, Some(ground)),
-        normal: at.normal,
-        tangents: builder.structure.dimension.tangents(at.normal),
-        slides_on_ground: along.is_none(),
-        law,
-    });
+    let pair = Pair::at_node(id, at.node, Some(ground), at.normal, builder.structure.dimension, law);
+    builder.structure.pairs.push(Pair { slides_on_ground: along.is_none(), ..pair });
     builder.places.pairs.push(place.into());
 }

@@ -1,5 +1,6 @@
 //! What is allowed and yet hardly meant: materials no one builds with under the named units, parts that nothing uses,
-//! loads that load nothing, ground inside a body, contacts and elements given twice. Warnings, never errors: an odd model is still the author's.
+//! loads that load nothing, ground inside a body, contacts and elements given twice. Warnings, never errors: an odd model is
+//! still the author's.
 
 mod loads;
 pub mod normals;

@@ -425,20 +425,9 @@ fn steel() -> Material {
 }
 
 fn ground_pair(id: &str, node: usize) -> Pair {
-    Pair {
-        id: id.into(),
-        node,
-        place: vec![(node, 1.0)],
-        weights: Pair::of_nodes(node, None),
-        normal: [0.0, 1.0, 0.0],
-        tangents: vec![[1.0, 0.0, 0.0]],
-        slides_on_ground: false,
-        law: Law::Coulomb {
-            friction: Number::Parameter("f".into()),
-            cohesion: Number::Value(0.0),
-            gap: Number::Value(0.0),
-        },
-    }
+    let law =
+        Law::Coulomb { friction: Number::Parameter("f".into()), cohesion: Number::Value(0.0), gap: Number::Value(0.0) };
+    Pair::at_node(id.into(), node, None, [0.0, 1.0, 0.0], Dimension::Plane, law)
 }
 
 /// The factors of the load cases of a structure under a pull F2.
