@@ -1,5 +1,9 @@
 //! f64 numbers with an error bound: what a ball says of a sign is proved.
 
+use num_rational::BigRational;
+
+use crate::lcp::exact::dyadic::{nearest, rational};
+
 /// Bounds the relative error of an operation in f64: four times half a unit in the last place, as the radius itself is
 /// rounded, too.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
@@ -24,6 +28,17 @@ impl Ball {
     /// A number that was rounded to the nearest f64, to a unit in the last place.
     pub fn rounded(middle: f64) -> Self {
         Self { middle, radius: f64::EPSILON * middle.abs() + TINY }
+    }
+
+    /// A number rounded to the nearest f64.
+    pub fn around(value: &BigRational) -> Self {
+        let near = nearest(value);
+        if rational(near) == *value { Ball::exactly(near) } else { Ball::rounded(near) }
+    }
+
+    /// As much farther either way.
+    pub fn within(self, room: f64) -> Self {
+        self.plus(Ball { middle: 0.0, radius: room })
     }
 
     fn widened(middle: f64, radius: f64) -> Self {

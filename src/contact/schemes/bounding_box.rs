@@ -1,4 +1,4 @@
-//! A box that holds every answer of a contact problem with positive definite R, proved.
+//! A box that holds every answer of a contact problem with positive definite R, proved, for all q within given bounds.
 //!
 //! Every answer has zᵀλ ≤ 0, so zᵀR z ≤ −zᵀq: an ellipsoid about z₀/2, z₀ = −R⁻¹q. What is computed in f64 only comes
 //! near to R⁻¹ and z₀; the bounds hold for whatever came out, with C ≈ R⁻¹ and r = q + R z₀:
@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 
 use crate::contact::schemes::ball::Ball;
-use crate::lcp::exact::dyadic::{nearest, rational};
+use crate::lcp::exact::dyadic::nearest;
 
 /// Condition of R, scaled to a diagonal near 1, up to which a box is worth its cost.
 const CONDITION: f64 = 1e10;
@@ -25,7 +25,7 @@ const SAFE: f64 = 0.5;
 /// Lowest and highest z of each of the `joints`; `None` where R is not safely positive definite there.
 pub(crate) fn ellipsoid(
     stiffness: &[Vec<BigRational>],
-    constants: &[BigRational],
+    constants: &[Ball],
     joints: &[usize],
 ) -> Option<Vec<(f64, f64)>> {
     let k = joints.len();
@@ -38,14 +38,10 @@ pub(crate) fn ellipsoid(
         (entry > 0.0 && entry.is_finite()).then(|| 2f64.powi((entry.log2() / 2.0).round() as i32))
     };
     let root: Vec<f64> = joints.iter().map(root).collect::<Option<_>>()?;
-    let scaled = |value: &BigRational, by: f64| {
-        let near = nearest(value);
-        let ball = if rational(near) == *value { Ball::exactly(near) } else { Ball::rounded(near) };
-        Ball { middle: ball.middle / by, radius: ball.radius / by }
-    };
-    let balls: Vec<Vec<Ball>> =
-        (0..k).map(|i| (0..k).map(|j| scaled(&stiffness[joints[i]][joints[j]], root[i] * root[j])).collect()).collect();
-    let q: Vec<Ball> = (0..k).map(|i| scaled(&constants[joints[i]], root[i])).collect();
+    let divided = |ball: Ball, by: f64| Ball { middle: ball.middle / by, radius: ball.radius / by };
+    let entry = |i: usize, j: usize| divided(Ball::around(&stiffness[joints[i]][joints[j]]), root[i] * root[j]);
+    let balls: Vec<Vec<Ball>> = (0..k).map(|i| (0..k).map(|j| entry(i, j)).collect()).collect();
+    let q: Vec<Ball> = (0..k).map(|i| divided(constants[joints[i]], root[i])).collect();
     let r = DMatrix::from_fn(k, k, |i, j| balls[i][j].middle);
     let least = least_eigenvalue(&r)?;
     let largest_z = norm(&q).over(Ball::exactly(least))?;
@@ -111,6 +107,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
+    use crate::lcp::exact::dyadic::rational;
 
     /// Points of the ellipsoid as far as it goes: its support points in the directions of the axes, from the exact
     /// inverse of a matrix in whole numbers.
@@ -122,10 +119,9 @@ mod tests {
             let a = DMatrix::from_fn(k, k, |_, _| f64::from(random.random_range(-3..=3)));
             let r = &a * a.transpose() + DMatrix::identity(k, k);
             let q = DVector::from_fn(k, |_, _| f64::from(random.random_range(-3..=3)));
-            let exact = |value: f64| rational(value);
             let stiffness: Vec<Vec<BigRational>> =
-                r.row_iter().map(|row| row.iter().map(|v| exact(*v)).collect()).collect();
-            let constants: Vec<BigRational> = q.iter().map(|v| exact(*v)).collect();
+                r.row_iter().map(|row| row.iter().map(|v| rational(*v)).collect()).collect();
+            let constants: Vec<Ball> = q.iter().map(|v| Ball::exactly(*v)).collect();
             let joints: Vec<usize> = (0..k).collect();
             let sides = ellipsoid(&stiffness, &constants, &joints).expect("positive definite");
             let inverse = r.clone().try_inverse().expect("regular");
@@ -142,6 +138,6 @@ mod tests {
         // λ_min is 0.
         let one = rational(1.0);
         let singular = vec![vec![one.clone(), one.clone()], vec![one.clone(), one.clone()]];
-        assert_eq!(ellipsoid(&singular, &[one.clone(), one], &[0, 1]), None);
+        assert_eq!(ellipsoid(&singular, &[Ball::exactly(1.0); 2], &[0, 1]), None);
     }
 }

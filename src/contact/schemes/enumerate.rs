@@ -13,7 +13,7 @@ use num_rational::BigRational;
 use crate::contact::law::{PairLaw, TangentialJoint};
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
-use crate::contact::schemes::exact_system::{ExactSystem, PairVariables};
+use crate::contact::schemes::exact_system::{ExactSystem, PairVariables, Rooms};
 use crate::contact::schemes::pruning::{Level, Pruning};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
 use crate::lcp::exact::all_solutions::Solutions;
@@ -115,11 +115,22 @@ pub(super) fn choices(law: &PairLaw, polygon: Polygon) -> Vec<PairScheme> {
 /// Finds every answer. `observer` hears of the progress before every step and may stop the search; what was found until
 /// then is returned as incomplete.
 pub fn enumerate(problem: &ContactProblem, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Enumeration {
-    let mut search = Search::new(problem, observer);
+    enumerate_within(problem, &[], observer).0
+}
+
+/// The same, and the partial schemes that were cut, but not for every system whose joints have forces that lie up to
+/// `rooms` beside those of this one; none of them where `rooms` is empty.
+pub(super) fn enumerate_within(
+    problem: &ContactProblem,
+    rooms: &[f64],
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> (Enumeration, Vec<Vec<PairScheme>>) {
+    let mut search = Search::new(problem, rooms, observer);
     let mut scheme = Vec::with_capacity(problem.system.pair_count());
-    let root = search.pruning.root(&search.exact);
+    let root = search.pruning.root(&search.exact, &search.exact.constants_within(rooms));
     let ended = search.descend(Some(&root), None, &mut scheme, 1.0);
-    search.result(ended.is_continue())
+    let doubtful = std::mem::take(&mut search.doubtful);
+    (search.result(ended.is_continue()), doubtful)
 }
 
 struct Search<'a> {
@@ -131,23 +142,35 @@ struct Search<'a> {
     /// From this many undecided pairs on the exact linear program pays.
     worth: usize,
     choices: Vec<Vec<PairScheme>>,
+    /// How far x_n and the reserves may lie from their forms.
+    rooms: Rooms,
+    /// Partial schemes that are cut, but not within this.
+    doubtful: Vec<Vec<PairScheme>>,
     solutions: Solutions,
     /// The schemes of every basic solution.
     schemes: Vec<Vec<Vec<PairScheme>>>,
 }
 
 impl<'a> Search<'a> {
-    fn new(problem: &'a ContactProblem, observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>) -> Self {
+    fn new(
+        problem: &'a ContactProblem,
+        rooms: &[f64],
+        observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Self {
         let exact = ExactSystem::new(problem);
-        let pruning = Pruning::new(&exact);
+        let pruning = Pruning::new(&exact, &exact.constants_within(rooms));
         let worth = match (pruning.has_box, problem.system.is_in_space()) {
             (_, true) => WORTH_IN_SPACE,
             (true, false) => WORTH_BOXED,
             (false, false) => WORTH,
         };
+        let variables = exact.variables();
+        let rooms = if rooms.is_empty() { Rooms::default() } else { exact.rooms_of(&variables, rooms) };
         Self {
-            variables: exact.variables(),
+            variables,
             exact,
+            rooms,
+            doubtful: Vec::new(),
             observer,
             progress: Progress { nodes: 0, share: 0.0, found: 0 },
             pruning,
@@ -171,7 +194,7 @@ impl<'a> Search<'a> {
         if pair == self.choices.len() {
             // Only without any pair.
             let polyhedron = self.program(above, scheme)?;
-            return polyhedron.map_or(ControlFlow::Continue(()), |polyhedron| self.leaf(&polyhedron, scheme));
+            return polyhedron.map_or(ControlFlow::Continue(()), |polyhedron| self.leaf(polyhedron, scheme));
         }
         let left = self.choices.len() - pair - 1;
         let share = share / self.choices[pair].len() as f64;
@@ -190,7 +213,7 @@ impl<'a> Search<'a> {
                     ControlFlow::Continue(Some(polyhedron)) if left == 0 => {
                         self.progress.share += share;
                         self.solutions.leaves += 1;
-                        self.leaf(&polyhedron, scheme)
+                        self.leaf(polyhedron, scheme)
                     }
                     ControlFlow::Continue(Some(polyhedron)) => {
                         self.descend(next.as_ref(), Some((&polyhedron, pair + 1)), scheme, share)
@@ -227,31 +250,41 @@ impl<'a> Search<'a> {
             Some((polyhedron, decided)) => (polyhedron.clone(), State::Feasible, decided),
             None => {
                 let (polyhedron, state) = self.exact.polyhedron(&self.pruning.sides(), &mut go_on);
+                // Forces that were fixed have their part in a contradiction.
+                let polyhedron =
+                    if self.rooms.are_none() { polyhedron } else { polyhedron.keep_fixed(self.exact.stiffness.len()) };
                 (polyhedron, state, 0)
             }
         };
+        let mut pinned = None;
         for (pair, chosen) in scheme.iter().enumerate().skip(decided) {
             if state == State::Feasible {
                 let holds = self.exact.problem.laws[pair].fixed_bound() > 0.0;
-                state = self.variables[pair].impose(&mut polyhedron, *chosen, holds, &mut go_on);
+                (state, pinned) = self.variables[pair].impose(&mut polyhedron, *chosen, holds, &mut go_on);
             }
         }
         match state {
             State::Feasible => ControlFlow::Continue(Some(polyhedron)),
-            State::Empty => ControlFlow::Continue(None),
             State::Stopped => ControlFlow::Break(()),
+            State::Empty => {
+                let leave = |found| self.rooms.leave(&found);
+                if !self.rooms.are_none() && !polyhedron.contradiction(pinned).is_some_and(leave) {
+                    self.doubtful.push(scheme.to_vec());
+                }
+                ControlFlow::Continue(None)
+            }
         }
     }
 
     /// All answers of a complete scheme.
-    fn leaf(&mut self, polyhedron: &Polyhedron, scheme: &[PairScheme]) -> ControlFlow<()> {
+    fn leaf(&mut self, polyhedron: Polyhedron, scheme: &[PairScheme]) -> ControlFlow<()> {
         let joints: Vec<usize> = (0..self.exact.problem.system.joint_count()).collect();
         let mut stopped = false;
         let mut go_on = || {
             stopped |= (self.observer)(self.progress).is_break();
             !stopped
         };
-        let found = corners(polyhedron, &joints, &mut go_on);
+        let found = corners(&polyhedron.without_fixed(), &joints, &mut go_on);
         for at in self.solutions.add(found) {
             if at == self.schemes.len() {
                 self.schemes.push(Vec::new());

@@ -1,17 +1,21 @@
 //! The contact problem in rationals, as enumeration works on it: every statement of the laws is the sign of a linear
 //! form in z.
 
+use std::collections::HashMap;
+
 use nalgebra::DMatrix;
 use num_rational::BigRational;
-use num_traits::Zero;
+use num_traits::{Signed, Zero};
 
 use crate::lcp::exact::dyadic::{WholeRows, rational, rational_rows};
 use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
 use crate::lcp::exact::rational_solve::{clear_denominators, product, rank_modulo_prime};
+use crate::lcp::exact::scalar::BigInt;
 
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::{RowId, RowKind};
+use crate::contact::schemes::ball::Ball;
 use crate::contact::schemes::scheme::{PairScheme, Tangential, slip_forms};
 use crate::contact::system::{ContactPair, ContactSystem};
 
@@ -27,6 +31,27 @@ pub(crate) struct ExactSystem<'a> {
     pub constants: Vec<BigRational>,
     /// How far the force of each joint may lie from this, either way; empty where it is exact.
     rooms: Vec<f64>,
+}
+
+/// How far variables may lie from their forms, in parts of one.
+#[derive(Default)]
+pub(crate) struct Rooms {
+    of: HashMap<usize, BigInt>,
+    /// As many parts make one.
+    common: BigInt,
+}
+
+impl Rooms {
+    /// Whether every variable has the value of its form.
+    pub fn are_none(&self) -> bool {
+        self.of.is_empty()
+    }
+
+    /// Whether a [contradiction](Polyhedron::contradiction) stays one wherever in their rooms the variables lie.
+    pub fn leave(&self, (factors, sum): &(Vec<(usize, BigInt)>, BigInt)) -> bool {
+        let room = |(variable, factor): &(usize, BigInt)| Some(self.of.get(variable)? * factor.abs());
+        factors.iter().filter_map(room).sum::<BigInt>() < -sum * &self.common
+    }
 }
 
 /// The variables of a pair in the polyhedron.
@@ -176,6 +201,31 @@ impl<'a> ExactSystem<'a> {
         form
     }
 
+    /// RF − R·(g, 0) of each joint, within its `rooms` either way where there are any.
+    pub fn constants_within(&self, rooms: &[f64]) -> Vec<Ball> {
+        let room = |joint: usize| rooms.get(joint).copied().unwrap_or(0.0);
+        self.constants.iter().enumerate().map(|(joint, constant)| Ball::around(constant).within(room(joint))).collect()
+    }
+
+    /// How far x_n and the reserves may lie from their forms where the force of each joint may lie as far from its own
+    /// as its room.
+    pub fn rooms_of(&self, variables: &[PairVariables], rooms: &[f64]) -> Rooms {
+        let room = |row: RowId| {
+            let friction = (row.couple != RowKind::Normal).then(|| (row.pair, self.problem.laws[row.pair].friction()));
+            let terms = row.joints(&self.problem.system, self.problem.polygon).chain(friction);
+            terms.map(|(joint, factor)| rational(factor.abs()) * rational(rooms[joint])).sum::<BigRational>()
+        };
+        let mut all = Vec::new();
+        for (pair, of) in variables.iter().enumerate() {
+            all.extend(of.x_n.map(|x_n| (x_n, room(RowId { pair, couple: RowKind::Normal }))));
+            let reserves = of.tangential.iter().flat_map(|of| of.reserves.iter().enumerate());
+            all.extend(reserves.map(|(facet, &at)| (at, room(RowId { pair, couple: RowKind::Facet(facet as u16) }))));
+        }
+        let (variables, values): (Vec<usize>, Vec<BigRational>) = all.into_iter().unzip();
+        let (whole, common) = clear_denominators(&values);
+        Rooms { of: variables.into_iter().zip(whole).collect(), common }
+    }
+
     /// λ at z.
     pub fn force(&self, z: &[BigRational]) -> Vec<BigRational> {
         self.stiffness
@@ -190,36 +240,42 @@ impl<'a> ExactSystem<'a> {
 }
 
 impl PairVariables {
-    /// What a scheme of this pair asks for.
-    pub fn impose(&self, polyhedron: &mut Polyhedron, scheme: PairScheme, holds: bool, go_on: &mut GoOn) -> State {
+    /// What a scheme of this pair asks for; returns the state and the variable that was fixed last.
+    pub fn impose(
+        &self,
+        polyhedron: &mut Polyhedron,
+        scheme: PairScheme,
+        holds: bool,
+        go_on: &mut GoOn,
+    ) -> (State, Option<usize>) {
         let mut zero = Vec::new();
         if let Some(x_n) = self.x_n {
             zero.push(if scheme.open { x_n } else { self.z_n });
         }
-        let Some(of) = &self.tangential else { return polyhedron.fix_all(zero, go_on).0 };
+        let Some(of) = &self.tangential else { return polyhedron.fix_all(zero, go_on) };
         // An open pair that nothing holds slips freely: all its reserves are zero, and with two of them the others.
         if scheme.open && !holds {
             zero.extend(of.reserves.iter().take(2));
-            return polyhedron.fix_all(zero, go_on).0;
+            return polyhedron.fix_all(zero, go_on);
         }
         if scheme.tangential == Tangential::Stick {
             zero.extend(&of.slips);
-            return polyhedron.fix_all(zero, go_on).0;
+            return polyhedron.fix_all(zero, go_on);
         }
         let conditions = scheme.tangential.conditions(of.polygon);
         zero.extend(conditions.reserves.iter().map(|facet| of.reserves[*facet]));
         zero.extend(conditions.zero.iter().map(|form| of.turns[*form]));
-        let (mut state, _) = polyhedron.fix_all(zero, go_on);
+        let (mut state, mut pinned) = polyhedron.fix_all(zero, go_on);
         for (form, up) in conditions.signs {
             if state != State::Feasible {
-                return state;
+                break;
             }
             if !up {
                 polyhedron.negate(of.turns[form]);
             }
-            state = polyhedron.restrict(of.turns[form], go_on);
+            (state, pinned) = (polyhedron.restrict(of.turns[form], go_on), None);
         }
-        state
+        (state, pinned)
     }
 }
 

@@ -6,14 +6,11 @@
 //! every answer lies in (zᵀλ ≤ 0 for every answer; q is RF − R·(g, 0)), with proved bounds
 //! ([`crate::contact::schemes::bounding_box`]).
 
-use num_rational::BigRational;
-
 use crate::contact::problem::ContactProblem;
 use crate::contact::schemes::ball::{Ball, Row, eliminated};
 use crate::contact::schemes::bounding_box::ellipsoid;
 use crate::contact::schemes::exact_system::ExactSystem;
 use crate::contact::schemes::scheme::{PairScheme, Tangential, slip_forms};
-use crate::lcp::exact::dyadic::{nearest, rational};
 
 /// The dictionary of a partial scheme. Rows: one per joint, pair by pair (n, then the tangential ones), holding λ_j or
 /// z_j, whichever is not fixed. Columns: the undecided joints from `first` on, then the constant.
@@ -37,7 +34,8 @@ pub(crate) struct Pruning<'a> {
 }
 
 impl<'a> Pruning<'a> {
-    pub fn new(exact: &ExactSystem<'a>) -> Self {
+    /// `constants`: RF − R·(g, 0) of each joint with what rounding may have made of it.
+    pub fn new(exact: &ExactSystem<'a>, constants: &[Ball]) -> Self {
         let problem = exact.problem;
         let system = &*problem.system;
         let mut joints = Vec::new();
@@ -52,7 +50,7 @@ impl<'a> Pruning<'a> {
             .iter()
             .map(|&joint| if is_normal(joint) { (0.0, f64::INFINITY) } else { (f64::NEG_INFINITY, f64::INFINITY) })
             .collect();
-        let sides = ellipsoid(&exact.stiffness, &exact.constants, &joints);
+        let sides = ellipsoid(&exact.stiffness, constants, &joints);
         let has_box = sides.is_some();
         for (bound, (low, high)) in bounds.iter_mut().zip(sides.into_iter().flatten()) {
             *bound = (bound.0.max(low), bound.1.min(high));
@@ -61,15 +59,11 @@ impl<'a> Pruning<'a> {
     }
 
     /// Nothing decided yet.
-    pub fn root(&self, exact: &ExactSystem<'_>) -> Level {
-        let ball = |value: &BigRational| {
-            let near = nearest(value);
-            if rational(near) == *value { Ball::exactly(near) } else { Ball::rounded(near) }
-        };
+    pub fn root(&self, exact: &ExactSystem<'_>, constants: &[Ball]) -> Level {
         let mut rows = Vec::with_capacity(self.joints.len() * (self.joints.len() + 1));
         for &i in &self.joints {
-            rows.extend(self.joints.iter().map(|&j| ball(&exact.stiffness[i][j])));
-            rows.push(ball(&exact.constants[i]));
+            rows.extend(self.joints.iter().map(|&j| Ball::around(&exact.stiffness[i][j])));
+            rows.push(constants[i]);
         }
         Level { first: 0, rows }
     }

@@ -47,8 +47,8 @@ pub struct Polyhedron {
     free: Vec<bool>,
     /// For each variable, the factor ≠ 0: what stands in the dictionary is the variable times this.
     scale: Vec<BigInt>,
-    /// Whether fixed variables keep their columns.
-    keeps: bool,
+    /// From this variable on, those that are fixed keep their columns.
+    keeps_from: usize,
     /// For each variable, whether it is fixed and still has a column.
     fixed: Vec<bool>,
 }
@@ -69,17 +69,18 @@ impl Polyhedron {
             denominator: BigInt::one(),
             free: is_free,
             scale: std::iter::repeat_n(BigInt::one(), columns).chain(given.scale).collect(),
-            keeps: false,
+            keeps_from: usize::MAX,
             fixed: vec![false; count],
         };
         made.free_to_rows();
         made
     }
 
-    /// From now on variables that are fixed keep their columns, for [`Polyhedron::contradiction`].
+    /// From now on variables that are fixed keep their columns, for [`Polyhedron::contradiction`]: all from number
+    /// `first` on.
     #[must_use]
-    pub fn keep_fixed(mut self) -> Self {
-        self.keeps = true;
+    pub fn keep_fixed(mut self, first: usize) -> Self {
+        self.keeps_from = first;
         self
     }
 
@@ -87,7 +88,7 @@ impl Polyhedron {
     /// it.
     #[must_use]
     pub fn without_fixed(mut self) -> Self {
-        self.keeps = false;
+        self.keeps_from = usize::MAX;
         while let Some(column) = self.nonbasic.iter().position(|&variable| self.fixed[variable]) {
             self.drop_column(column);
         }
@@ -95,9 +96,9 @@ impl Polyhedron {
     }
 
     /// For an empty polyhedron: factors of variables (in the user's units) whose sum is a negative number, whatever the
-    /// values. Those of variables ≥ 0 are ≥ 0; fixed variables, where they are kept, may have any. `pinned` is the
-    /// variable whose fixing at zero was refused, if that emptied it.
-    pub fn contradiction(&self, pinned: Option<usize>) -> Option<Vec<(usize, BigInt)>> {
+    /// values; and this number. Factors of variables ≥ 0 are ≥ 0; fixed variables, where they are kept, may have any.
+    /// `pinned` is the variable whose fixing at zero was refused, if that emptied it.
+    pub fn contradiction(&self, pinned: Option<usize>) -> Option<(Vec<(usize, BigInt)>, BigInt)> {
         let hopeless = self.hopeless_row().map(|row| (row, false));
         let refused = || {
             let row = self.row_of(pinned?)?;
@@ -114,7 +115,8 @@ impl Polyhedron {
             .iter()
             .enumerate()
             .map(|(column, &variable)| (variable, signed(-(&self.rows[row][column] * &self.scale[variable]))));
-        Some(std::iter::once(own).chain(others).filter(|(_, factor)| !factor.is_zero()).collect())
+        let factors = std::iter::once(own).chain(others).filter(|(_, factor)| !factor.is_zero()).collect();
+        Some((factors, signed(self.constant(row).clone())))
     }
 
     /// For a feasible polyhedron: factors ≥ 0 of variables whose sum is 0 whatever the values, > 0 for every column, so
@@ -388,7 +390,7 @@ impl Polyhedron {
             }
         }
         if let Some(column) = self.nonbasic.iter().position(|&v| v == variable) {
-            if self.keeps {
+            if variable >= self.keeps_from {
                 self.fixed[variable] = true;
             } else {
                 self.drop_column(column);

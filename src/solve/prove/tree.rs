@@ -96,7 +96,7 @@ pub(super) fn impose(polyhedron: &mut Polyhedron, branch: &Branch, go_on: &mut G
 
 /// The sum that proves a polyhedron empty, −1 whatever the unknowns.
 pub(super) fn contradiction(forms: &Forms, empty: &Polyhedron, pinned: Option<usize>) -> Option<Sum> {
-    let sum = in_units(empty.contradiction(pinned)?, &BigInt::one());
+    let sum = in_units(empty.contradiction(pinned)?.0, &BigInt::one());
     let constant: BigRational = sum
         .iter()
         .filter_map(|(variable, factor)| Some(factor * forms.forms.get(variable.checked_sub(forms.unknowns)?)?.last()?))
