@@ -10,6 +10,8 @@ use crate::text::number::short;
 
 /// Longest bar of a histogram.
 const LONGEST: usize = 40;
+/// Share of the largest value of a quantity below which a value is the rounding of its terms.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Probabilities, a table of the quantities, their histograms.
 ///
@@ -62,7 +64,10 @@ fn quantiles(out: &mut dyn Write, spreads: &[Spread], style: &Style) -> io::Resu
     let mut table = Table::new(columns);
     for spread in numbers {
         let mut cells = vec![Cell::from(spread.quantity.as_str()), Cell::from(spread.unit.as_deref().unwrap_or(""))];
-        let some = |value: Option<f64>| Cell::new(value.map(short).unwrap_or_default(), Role::Plain);
+        // What is left of a sum of values of this size is its rounding.
+        let size = spread.least.into_iter().chain(spread.most).fold(0.0, |size: f64, end| size.max(end.abs()));
+        let number = |value: f64| short(if value.abs() > ROUNDING * size { value } else { 0.0 });
+        let some = |value: Option<f64>| Cell::new(value.map(number).unwrap_or_default(), Role::Plain);
         cells.extend([spread.mean, spread.deviation, spread.least].map(some));
         cells.extend(spread.quantiles.iter().map(|(_, value)| some(Some(*value))));
         cells.push(some(spread.most));

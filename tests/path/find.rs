@@ -311,6 +311,23 @@ fn ranges_begin_below_zero() {
     assert!(error.contains("--ot"), "{error}");
 }
 
+/// A spring of 100 pulled by 3 where · 1: words of the commands may be names of parameters.
+#[test]
+fn names_may_be_words_of_the_commands() {
+    let text = r#"{ "format": "stickslip/1", "title": "t", "parameters": { "where": 1, "most": 3, "of": 0.2 },
+        "nodes": { "A": [0, 0] }, "springs": [{ "at": "A", "direction": [1, 0], "stiffness": 100 }],
+        "contacts": [{ "id": "c", "node": "A", "against": "ground", "normal": [0, 1], "friction": "of" }],
+        "loads": { "w": { "items": [{ "point": { "at": "A", "force": [0, -10] } }] },
+                   "p": { "factor": "where*most", "items": [{ "point": { "at": "A", "force": [1, 0] } }] } } }"#;
+    let mut session = session(load_text("t.json", text, None).unwrap());
+    let mut place = |command: &str| report(&mut session, command).unwrap_or_else(|error| panic!("{command}: {error}"));
+    // x_t = −3 where while it sticks, |x_t| ≤ 2
+    near(&place("find where 0..1 where x_t c = -1.5")["places"][0]["value"], 0.5, 1e-9);
+    near(&place("find most 0..3 where x_t c = -1.5")["places"][0]["value"], 1.5, 1e-9);
+    near(&place("find most most 0..3 where x_t c > -1.5")["places"][0]["value"], 1.5, 1e-6);
+    assert!(place("map of 0.1..1 where 0..1 of x_t c").to_string().contains("\"of\""));
+}
+
 #[test]
 fn wrong_questions_are_refused_in_words() {
     for (command, part) in [

@@ -122,7 +122,7 @@ fn rare_collapse_is_met_near_the_limit() {
     scenario["parameters"]["F2"]["value"] = json!(150);
     let mut session = of(&scenario);
     let names: String = (1..=6).map(|k| format!("f{k}=uniform(0.2,0.6) ")).collect();
-    let found = report(&mut session, &format!("sample {names} 500 --seed 3")).unwrap();
+    let found = report(&mut session, &format!("sample {names} 400 --seed 3")).unwrap();
     let (share, error) = (value(&found, "collapse"), value(&found, "standard_error"));
     assert!((share - 0.75f64.powi(6) / 720.0).abs() < 3.0 * error, "{found}");
     assert!(error < 0.3 * share && found["near"] == "pull" && found["exact"] == false, "{found}");
@@ -145,7 +145,7 @@ fn the_estimate_is_the_share_within_its_error() {
     let exact = 1.104_524_849_929_275_4e-5;
     let mut off = Vec::new();
     for seed in 1..=8 {
-        let command = format!("sample f=normal(0.5,0.05) T=normal(0.2,0.05) 1000 --seed {seed}");
+        let command = format!("sample f=normal(0.5,0.05) T=normal(0.2,0.05) 500 --seed {seed}");
         let found = report(&mut of(&one_pair()), &command).unwrap();
         let (share, error) = (value(&found, "collapse"), value(&found, "standard_error"));
         assert!(error < 0.2 * exact && found["near"] == "push", "{found}");

@@ -121,9 +121,11 @@ impl Session {
     fn request(&self, words: &[String]) -> Result<Request, CommandError> {
         let form = "find: expected `find NAME [A..B] where QUANTITY = VALUE` or `find least|most NAME [A..B] where outcome \
                     answer`";
-        let at = words.iter().position(|word| word == "where");
+        // The first word is no `where`, but may be the name of a parameter.
+        let at = (1..words.len()).find(|&at| words[at] == "where");
         let Some((head, condition)) = at.map(|at| (&words[..at], &words[at + 1..])) else { return refused(form) };
         let (which, head) = match head {
+            [word, name, ..] if self.varied(name).is_err() && self.varied(word).is_ok() => (None, head),
             [word, rest @ ..] if word == "least" && !rest.is_empty() => (Some(Which::Least), rest),
             [word, rest @ ..] if word == "most" && !rest.is_empty() => (Some(Which::Most), rest),
             head => (None, head),

@@ -85,7 +85,8 @@ impl Drawn {
 impl Session {
     /// `map P [A..B] Q [C..D] [of QUANTITY]`.
     pub(in crate::session) fn draw_map(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
-        let (words, quantity) = match words.iter().position(|word| word == "of") {
+        // The first word is a name, whatever it is.
+        let (words, quantity) = match (1..words.len()).find(|&at| words[at] == "of") {
             None => (words, None),
             Some(at) => {
                 let quantities = self.quantities(&words[at + 1..])?;
