@@ -4,7 +4,7 @@ use faer::linalg::solvers::{Llt, PartialPivLu, Solve};
 use faer::{Mat, MatMut, MatRef, Side};
 use nalgebra::{DMatrix, DVector};
 
-use crate::products::add_doubled_response;
+use crate::doubled::add_response;
 
 /// A = U diag(σ) Vᵀ, V square; σ descending, padded with zeros to the number of columns.
 pub struct Svd {
@@ -146,7 +146,7 @@ impl Factor {
     fn residual(&self, right: &DVector<f64>, x: &DVector<f64>) -> DVector<f64> {
         let mut sum = right.clone();
         let mut error = DVector::<f64>::zeros(right.len());
-        add_doubled_response(sum.as_mut_slice(), error.as_mut_slice(), self.matrix.as_slice(), (-x).as_slice());
+        add_response(sum.as_mut_slice(), error.as_mut_slice(), self.matrix.as_slice(), (-x).as_slice());
         sum + error
     }
 }

@@ -214,6 +214,36 @@ fn run<W: Work>(work: W) -> W::Output {
     Arch::new().dispatch(Compiled(work))
 }
 
+/// high + low += matrix · x, the rounding errors of every product and sum carried along in `low` (Ogita, Rump, Oishi
+/// 2005), column by column as the matrix is stored.
+pub fn add_response(high: &mut [f64], low: &mut [f64], matrix: &[f64], x: &[f64]) {
+    struct Response<'a> {
+        high: &'a mut [f64],
+        low: &'a mut [f64],
+        matrix: &'a [f64],
+        x: &'a [f64],
+    }
+    impl Work for Response<'_> {
+        type Output = ();
+
+        #[inline(always)]
+        fn run<const FUSED: bool>(self) {
+            let Response { high, low, matrix, x } = self;
+            let columns = matrix.chunks_exact(high.len().max(1)).zip(x).filter(|(_, x)| **x != 0.0);
+            for (column, x) in columns {
+                for ((high, low), entry) in high.iter_mut().zip(low.iter_mut()).zip(column) {
+                    let Doubled { hi: product, lo: product_error } = Doubled::product_as::<FUSED>(*entry, *x);
+                    let next = *high + product;
+                    let back = next - *high;
+                    *low += (*high - (next - back)) + (product - back) + product_error;
+                    *high = next;
+                }
+            }
+        }
+    }
+    run(Response { high, low, matrix, x });
+}
+
 /// Σ a_i b_i.
 pub fn dot(a: &[Doubled], b: &[Doubled]) -> Doubled {
     struct Dot<'a>(&'a [Doubled], &'a [Doubled]);

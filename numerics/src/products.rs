@@ -3,6 +3,7 @@
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
+use pulp::Arch;
 
 /// Columns of a triangle that are multiplied out at once.
 const STRIP: usize = 128;
@@ -51,6 +52,12 @@ pub fn add_response(target: &mut [f64], matrix: &[f64], x: &[f64]) {
 
 /// target += Σ factor · column over the given (column, factor).
 pub fn add_columns(target: &mut [f64], terms: &[(&[f64], f64)]) {
+    // Wider registers, where the processor has them, change no byte.
+    Arch::new().dispatch(|| add_columns_here(target, terms));
+}
+
+#[inline(always)]
+fn add_columns_here(target: &mut [f64], terms: &[(&[f64], f64)]) {
     // Four columns at a time: the sum is read and written a quarter as often.
     let mut fours = terms.chunks_exact(4);
     for four in &mut fours {
@@ -63,22 +70,6 @@ pub fn add_columns(target: &mut [f64], terms: &[(&[f64], f64)]) {
     for &(column, factor) in fours.remainder() {
         for (sum, entry) in target.iter_mut().zip(column) {
             *sum += factor * entry;
-        }
-    }
-}
-
-/// high + low += matrix · x, the rounding errors of every product and sum carried along in `low` (Ogita, Rump, Oishi
-/// 2005), column by column as the matrix is stored.
-pub fn add_doubled_response(high: &mut [f64], low: &mut [f64], matrix: &[f64], x: &[f64]) {
-    let columns = matrix.chunks_exact(high.len().max(1)).zip(x).filter(|(_, x)| **x != 0.0);
-    for (column, x) in columns {
-        let factor = Split::new(*x);
-        for ((high, low), entry) in high.iter_mut().zip(low.iter_mut()).zip(column) {
-            let (product, product_error) = Split::new(*entry).times(&factor);
-            let next = *high + product;
-            let back = next - *high;
-            *low += (*high - (next - back)) + (product - back) + product_error;
-            *high = next;
         }
     }
 }

@@ -7,10 +7,13 @@
 //! A vector z counts as null only if every |(A z)_i| ≤ 64 ε Σ_k |A_ik||z_k|: what the digits of A cannot tell from 0. A
 //! ratio to the largest eigenvalue says nothing: diag(1e9, 1e-3) is regular (method §2).
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::doubled::{dot, sum_of_products};
-use stickslip_numerics::products::{halved_sums, roundings, subtract_square};
+use stickslip_numerics::doubled::add_response;
+use stickslip_numerics::products::{add_columns, halved_sums, roundings, subtract_square};
 
 /// A row of A z below this share of its terms is zero by the digits of A.
 pub const DIGITS: f64 = 64.0 * f64::EPSILON;
@@ -48,12 +51,20 @@ impl PivotedCholesky {
     pub fn new(matrix: &DMatrix<f64>) -> PivotedCholesky {
         let n = matrix.nrows();
         let scale = scales(matrix);
-        let mut l = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / scale[i] / scale[j]);
+        // Powers of two have exact inverses. The upper triangle is never touched, and so takes no memory.
+        let inverse: Vec<f64> = scale.iter().map(|scale| scale.recip()).collect();
+        let mut l = DMatrix::zeros(n, n);
+        for j in 0..n {
+            for i in j..n {
+                l[(i, j)] = matrix[(i, j)] * inverse[i] * inverse[j];
+            }
+        }
         let mut order: Vec<usize> = (0..n).collect();
         let mut rank = 0;
         // The diagonal before the panel at hand, side by side, and what the columns of the panel subtract from each entry.
         let mut diagonal = vec![0.0; n];
         let mut taken = vec![0.0; n];
+        let mut finished: Vec<(Range<usize>, Vec<usize>)> = Vec::new();
         while rank < n {
             let panel = rank;
             (panel..n).for_each(|i| diagonal[i] = l[(i, i)]);
@@ -64,9 +75,10 @@ impl PivotedCholesky {
                 let largest = (k..n).max_by(|&i, &j| left(i).total_cmp(&left(j)).then(j.cmp(&i))).unwrap_or(k);
                 let pivot = left(largest);
                 if pivot <= NEARLY {
+                    bring_rows_up(&mut l, &finished, &order);
                     return PivotedCholesky { scale, order, rank, l };
                 }
-                swap(&mut l, k, largest);
+                swap(&mut l, panel, k, largest);
                 diagonal.swap(k, largest);
                 taken.swap(k, largest);
                 order.swap(k, largest);
@@ -77,7 +89,9 @@ impl PivotedCholesky {
                 rank += 1;
             }
             finish_panel(&mut l, panel, rank);
+            finished.push((panel..rank, order.clone()));
         }
+        bring_rows_up(&mut l, &finished, &order);
         PivotedCholesky { scale, order, rank, l }
     }
 
@@ -138,9 +152,10 @@ impl PivotedCholesky {
         let mut residual = matrix.column(k) * own;
         z -= self.solve(&residual);
         for _ in 0..2 {
-            for &row in self.independent() {
-                residual[row] = dot(0.0, matrix.column(row).iter().zip(z.iter()));
-            }
+            let mut rest = DVector::zeros(z.len());
+            residual.fill(0.0);
+            add_response(residual.as_mut_slice(), rest.as_mut_slice(), matrix.as_slice(), z.as_slice());
+            residual += rest;
             z -= self.solve(&residual);
             // An entry that should be 0 holds rounding, and may be the only term of some row.
             let size = |i: usize| z[i].abs() * self.scale[i];
@@ -163,12 +178,13 @@ pub fn scales(matrix: &DMatrix<f64>) -> Vec<f64> {
     matrix.diagonal().iter().map(power).collect()
 }
 
-/// Swaps rows and columns of a symmetric matrix of which only the lower triangle is kept, k ≤ p.
-fn swap(a: &mut DMatrix<f64>, k: usize, p: usize) {
+/// Swaps rows and columns of a symmetric matrix of which only the lower triangle is kept, k ≤ p; the columns before `from`
+/// stay as they are.
+fn swap(a: &mut DMatrix<f64>, from: usize, k: usize, p: usize) {
     if k == p {
         return;
     }
-    for j in 0..k {
+    for j in from..k {
         a.swap((k, j), (p, j));
     }
     a.swap((k, k), (p, p));
@@ -185,22 +201,26 @@ fn finish_column(l: &mut DMatrix<f64>, from: usize, k: usize, root: f64) {
     let n = l.nrows();
     let (done, rest) = l.as_mut_slice().split_at_mut(k * n);
     let column = &mut rest[k + 1..n];
-    // Four at a time, so that the column is gone through as often less.
-    let mut fours = done[from * n..].chunks_exact(4 * n);
-    for four in &mut fours {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|at| &four[at * n + k..(at + 1) * n]);
-        let factors = [a[0], b[0], c[0], d[0]];
-        let below = a[1..].iter().zip(&b[1..]).zip(c[1..].iter().zip(&d[1..]));
-        for (entry, ((a, b), (c, d))) in column.iter_mut().zip(below) {
-            *entry = *entry - factors[0] * a - factors[1] * b - factors[2] * c - factors[3] * d;
-        }
-    }
-    for known in fours.remainder().chunks_exact(n) {
-        let factor = known[k];
-        column.iter_mut().zip(&known[k + 1..]).for_each(|(a, b)| *a -= factor * b);
-    }
+    let known: Vec<(&[f64], f64)> =
+        done[from * n..].chunks_exact(n).map(|known| (&known[k + 1..], -known[k])).collect();
+    add_columns(column, &known);
     column.iter_mut().for_each(|entry| *entry /= root);
     rest[k] = root;
+}
+
+/// Brings the rows of finished columns into the last order, each from that at the end of its panel: swapped one by one,
+/// every entry of a row would lie on another page.
+fn bring_rows_up(l: &mut DMatrix<f64>, finished: &[(Range<usize>, Vec<usize>)], order: &[usize]) {
+    let mut place = vec![0; order.len()];
+    for (columns, then) in finished {
+        then.iter().enumerate().for_each(|(at, &row)| place[row] = at);
+        let from: Vec<usize> = order[columns.end..].iter().map(|&row| place[row]).collect();
+        for column in columns.clone() {
+            let mut column = l.column_mut(column);
+            let moved: Vec<f64> = from.iter().map(|&at| column[at]).collect();
+            column.as_mut_slice()[columns.end..].copy_from_slice(&moved);
+        }
+    }
 }
 
 /// Subtracts the columns `from` … `to` from all that is to their right.

@@ -4,7 +4,7 @@ use super::{Candidate, PivotState, SUSPICIOUS};
 use crate::doubled::{Doubled, Real};
 use crate::lcp::dictionary::{Place, Slot};
 use crate::lcp::outcome::Point;
-use stickslip_numerics::products::add_doubled_response;
+use stickslip_numerics::doubled::add_response;
 
 /// Relative error of the dictionary against the data above which it is built afresh.
 const DRIFT: f64 = 1e-10;
@@ -169,7 +169,7 @@ impl<'a> Numbers<'a, Doubled> {
         let z = numbers.take_unknowns();
         let lcp = &stand.lcp;
         let (mut high, mut low) = (vec![0.0; lcp.size()], vec![0.0; lcp.size()]);
-        add_doubled_response(&mut high, &mut low, lcp.base.as_slice(), &z);
+        add_response(&mut high, &mut low, lcp.base.as_slice(), &z);
         let own = |i: usize| Doubled::sum(high[i], low[i]);
         let w = |i: usize| {
             let coupled = lcp.coupling(i).map_or_else(Doubled::default, |(n, f)| Doubled::from(f) * own(n));
