@@ -51,7 +51,7 @@ impl PivotedCholesky {
     pub fn new(matrix: &DMatrix<f64>) -> PivotedCholesky {
         let n = matrix.nrows();
         let scale = scales(matrix);
-        // Powers of two have exact inverses. The upper triangle is never touched, and so takes no memory.
+        // Powers of two have exact inverses. Most of the upper triangle is never touched, and so takes no memory.
         let inverse: Vec<f64> = scale.iter().map(|scale| scale.recip()).collect();
         let mut l = DMatrix::zeros(n, n);
         for j in 0..n {
@@ -65,7 +65,7 @@ impl PivotedCholesky {
         let mut diagonal = vec![0.0; n];
         let mut taken = vec![0.0; n];
         let mut finished: Vec<(Range<usize>, Vec<usize>)> = Vec::new();
-        while rank < n {
+        'panels: while rank < n {
             let panel = rank;
             (panel..n).for_each(|i| diagonal[i] = l[(i, i)]);
             taken.fill(0.0);
@@ -75,8 +75,7 @@ impl PivotedCholesky {
                 let largest = (k..n).max_by(|&i, &j| left(i).total_cmp(&left(j)).then(j.cmp(&i))).unwrap_or(k);
                 let pivot = left(largest);
                 if pivot <= NEARLY {
-                    bring_rows_up(&mut l, &finished, &order);
-                    return PivotedCholesky { scale, order, rank, l };
+                    break 'panels;
                 }
                 swap(&mut l, panel, k, largest);
                 diagonal.swap(k, largest);

@@ -127,7 +127,7 @@ pub(super) fn enumerate_within(
 ) -> (Enumeration, Vec<Vec<PairScheme>>) {
     let mut search = Search::new(problem, rooms, observer);
     let mut scheme = Vec::with_capacity(problem.system.pair_count());
-    let root = search.pruning.root(&search.exact, &search.exact.constants_within(rooms));
+    let root = search.pruning.root(&search.exact);
     let ended = search.descend(Some(&root), None, &mut scheme, 1.0);
     let doubtful = std::mem::take(&mut search.doubtful);
     (search.result(ended.is_continue()), doubtful)
@@ -158,7 +158,7 @@ impl<'a> Search<'a> {
         observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Self {
         let exact = ExactSystem::new(problem);
-        let pruning = Pruning::new(&exact, &exact.constants_within(rooms));
+        let pruning = Pruning::new(&exact, exact.constants_within(rooms));
         let worth = match (pruning.has_box, problem.system.is_in_space()) {
             (_, true) => WORTH_IN_SPACE,
             (true, false) => WORTH_BOXED,
@@ -267,8 +267,9 @@ impl<'a> Search<'a> {
             State::Feasible => ControlFlow::Continue(Some(polyhedron)),
             State::Stopped => ControlFlow::Break(()),
             State::Empty => {
-                let leave = |found| self.rooms.leave(&found);
-                if !self.rooms.are_none() && !polyhedron.contradiction(pinned).is_some_and(leave) {
+                if !self.rooms.are_none()
+                    && !polyhedron.contradiction(pinned).is_some_and(|found| self.rooms.leave(&found))
+                {
                     self.doubtful.push(scheme.to_vec());
                 }
                 ControlFlow::Continue(None)

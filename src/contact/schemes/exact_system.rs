@@ -240,7 +240,7 @@ impl<'a> ExactSystem<'a> {
 }
 
 impl PairVariables {
-    /// What a scheme of this pair asks for; returns the state and the variable that was fixed last.
+    /// What a scheme of this pair asks for: [`Polyhedron::impose`].
     pub fn impose(
         &self,
         polyhedron: &mut Polyhedron,
@@ -265,17 +265,8 @@ impl PairVariables {
         let conditions = scheme.tangential.conditions(of.polygon);
         zero.extend(conditions.reserves.iter().map(|facet| of.reserves[*facet]));
         zero.extend(conditions.zero.iter().map(|form| of.turns[*form]));
-        let (mut state, mut pinned) = polyhedron.fix_all(zero, go_on);
-        for (form, up) in conditions.signs {
-            if state != State::Feasible {
-                break;
-            }
-            if !up {
-                polyhedron.negate(of.turns[form]);
-            }
-            (state, pinned) = (polyhedron.restrict(of.turns[form], go_on), None);
-        }
-        (state, pinned)
+        let signs = conditions.signs.into_iter().map(|(form, up)| (of.turns[form], up));
+        polyhedron.impose(zero, signs, go_on)
     }
 }
 

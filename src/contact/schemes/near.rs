@@ -6,9 +6,9 @@
 //! ```text
 //!   λ = R (z − (g, 0)) + RF + e,   |e_j| ≤ what rounding can have made of λ_j where nothing moves
 //! ```
-//! with every e of its own. Most partial schemes are cut by a contradiction that no such e lifts; for the others that are cut
-//! by the stored numbers alone it is an exact linear program with e among its unknowns. Where R resists a motion by no more than its
-//! own rounding, nothing is proved: what the structure has there is lost beside what is stiffer.
+//! with every e of its own. Most partial schemes are cut by a contradiction that no such e lifts; for those that are cut
+//! by the stored numbers alone it is an exact linear program with e among its unknowns. Where R resists a motion by no
+//! more than its own rounding, nothing is proved: what the structure has there is lost beside what is stiffer.
 
 use std::ops::ControlFlow;
 

@@ -25,6 +25,8 @@ pub(crate) struct Pruning<'a> {
     offsets: Vec<usize>,
     /// Joint of R of every joint in the pair by pair order.
     joints: Vec<usize>,
+    /// RF − R·(g, 0) of each joint of R, with what rounding may have made of it.
+    constants: Vec<Ball>,
     /// Box of every displacement.
     bounds: Vec<(f64, f64)>,
     /// Whether the box has more sides than z_n ≥ 0.
@@ -34,8 +36,7 @@ pub(crate) struct Pruning<'a> {
 }
 
 impl<'a> Pruning<'a> {
-    /// `constants`: RF − R·(g, 0) of each joint with what rounding may have made of it.
-    pub fn new(exact: &ExactSystem<'a>, constants: &[Ball]) -> Self {
+    pub fn new(exact: &ExactSystem<'a>, constants: Vec<Ball>) -> Self {
         let problem = exact.problem;
         let system = &*problem.system;
         let mut joints = Vec::new();
@@ -50,20 +51,20 @@ impl<'a> Pruning<'a> {
             .iter()
             .map(|&joint| if is_normal(joint) { (0.0, f64::INFINITY) } else { (f64::NEG_INFINITY, f64::INFINITY) })
             .collect();
-        let sides = ellipsoid(&exact.stiffness, constants, &joints);
+        let sides = ellipsoid(&exact.stiffness, &constants, &joints);
         let has_box = sides.is_some();
         for (bound, (low, high)) in bounds.iter_mut().zip(sides.into_iter().flatten()) {
             *bound = (bound.0.max(low), bound.1.min(high));
         }
-        Self { problem, offsets, joints, bounds, has_box, forms: slip_forms(problem.polygon) }
+        Self { problem, offsets, joints, constants, bounds, has_box, forms: slip_forms(problem.polygon) }
     }
 
     /// Nothing decided yet.
-    pub fn root(&self, exact: &ExactSystem<'_>, constants: &[Ball]) -> Level {
+    pub fn root(&self, exact: &ExactSystem<'_>) -> Level {
         let mut rows = Vec::with_capacity(self.joints.len() * (self.joints.len() + 1));
         for &i in &self.joints {
             rows.extend(self.joints.iter().map(|&j| Ball::around(&exact.stiffness[i][j])));
-            rows.push(constants[i]);
+            rows.push(self.constants[i]);
         }
         Level { first: 0, rows }
     }

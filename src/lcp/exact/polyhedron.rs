@@ -328,6 +328,28 @@ impl Polyhedron {
         (State::Feasible, last)
     }
 
+    /// [Fixes](Polyhedron::fix_all) the variables `zero`, then [restricts](Polyhedron::restrict) those of `signs`, (variable,
+    /// whether it is ≥ 0 and not ≤ 0), as long as anything is left; returns the state and the variable whose fixing, if that
+    /// was the last step, led to it.
+    pub fn impose(
+        &mut self,
+        zero: impl IntoIterator<Item = usize>,
+        signs: impl IntoIterator<Item = (usize, bool)>,
+        go_on: &mut GoOn,
+    ) -> (State, Option<usize>) {
+        let (mut state, mut pinned) = self.fix_all(zero, go_on);
+        for (variable, up) in signs {
+            if state != State::Feasible {
+                break;
+            }
+            if !up {
+                self.negate(variable);
+            }
+            (state, pinned) = (self.restrict(variable, go_on), None);
+        }
+        (state, pinned)
+    }
+
     /// The column of least index along which the variable of `row` can grow.
     fn helps(&self, row: usize) -> Option<usize> {
         self.towards(row, &-BigInt::one())

@@ -15,7 +15,7 @@ use crate::session::error::refused;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
 use crate::session::language::expect::{self, Expectation, Operator};
-use crate::session::language::range;
+use crate::session::language::{range, tokens};
 use crate::session::{CommandError, Next, Output, Session, worker};
 
 /// Find the values of a parameter or load at which a quantity is as wanted
@@ -51,7 +51,7 @@ impl Action for Find {
 
 /// `least` or `most`, the parameter or load case, `where`, the condition.
 pub(super) fn words(asked: &Asked<'_>) -> Vec<Candidate> {
-    if let Some(at) = asked.given.iter().position(|word| word == "where") {
+    if let Some(at) = tokens::place_of(asked.given, "where") {
         let choices = |subject: &str| expect::choices(subject, asked.names.dimension);
         return match &asked.given[at + 1..] {
             [subject, _] if subject == "state" => Candidate::plain(["="]),
@@ -121,8 +121,7 @@ impl Session {
     fn request(&self, words: &[String]) -> Result<Request, CommandError> {
         let form = "find: expected `find NAME [A..B] where QUANTITY = VALUE` or `find least|most NAME [A..B] where outcome \
                     answer`";
-        // The first word is no `where`, but may be the name of a parameter.
-        let at = (1..words.len()).find(|&at| words[at] == "where");
+        let at = tokens::place_of(words, "where");
         let Some((head, condition)) = at.map(|at| (&words[..at], &words[at + 1..])) else { return refused(form) };
         let (which, head) = match head {
             [word, name, ..] if self.varied(name).is_err() && self.varied(word).is_ok() => (None, head),

@@ -15,6 +15,7 @@ use crate::path::route::Known;
 use crate::session::error::refused;
 use crate::session::language::candidates::{Asked, Candidate};
 use crate::session::language::command::{Action, Command};
+use crate::session::language::tokens;
 use crate::session::{CommandError, Next, Output, Session, worker};
 use crate::view;
 
@@ -52,7 +53,7 @@ impl Action for Map {
 
 /// Two parameters or load cases with their ranges; after `of` a quantity.
 fn candidates(asked: &Asked<'_>) -> Vec<Candidate> {
-    if let Some(at) = asked.given.iter().position(|word| word == "of") {
+    if let Some(at) = tokens::place_of(asked.given, "of") {
         return asked.quantities(&asked.given[at + 1..]);
     }
     let mut all = asked.varied();
@@ -85,8 +86,7 @@ impl Drawn {
 impl Session {
     /// `map P [A..B] Q [C..D] [of QUANTITY]`.
     pub(in crate::session) fn draw_map(&mut self, words: &[String], io: &mut Output<'_>) -> Result<(), CommandError> {
-        // The first word is a name, whatever it is.
-        let (words, quantity) = match (1..words.len()).find(|&at| words[at] == "of") {
+        let (words, quantity) = match tokens::place_of(words, "of") {
             None => (words, None),
             Some(at) => {
                 let quantities = self.quantities(&words[at + 1..])?;

@@ -7,6 +7,11 @@ use thiserror::Error;
 #[error("a quotation mark or a backslash at the end of `{0}` is left open: close it, or quote the mark itself")]
 pub struct OpenQuote(pub String);
 
+/// Where a word of the language stands in what follows a command. The first word is a name, whatever it is.
+pub fn place_of<T: AsRef<str>>(words: &[T], word: &str) -> Option<usize> {
+    (1..words.len()).find(|&at| words[at].as_ref() == word)
+}
+
 /// Where a character stands while a line is read from the left.
 #[derive(Clone, Copy, PartialEq)]
 enum Quote {

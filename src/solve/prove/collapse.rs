@@ -70,7 +70,7 @@ pub fn collapse(
     if state != State::Empty {
         return None;
     }
-    let sum = contradiction(&forms, &polyhedron, pinned)?;
+    let sum = contradiction(&polyhedron, pinned)?;
     let motion = motion_of(contact, sum);
     let force = |row: &Vec<BigRational>| row.iter().zip(&motion).map(|(r, z)| r * z).sum::<BigRational>();
     if stiffness.iter().any(|row| !force(row).is_zero()) {

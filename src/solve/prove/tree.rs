@@ -81,28 +81,12 @@ struct Search<'a> {
 
 /// What a branch asks for; the state, and the variable that was fixed last.
 pub(super) fn impose(polyhedron: &mut Polyhedron, branch: &Branch, go_on: &mut GoOn) -> (State, Option<usize>) {
-    let (mut state, mut pinned) = polyhedron.fix_all(branch.zero.iter().copied(), go_on);
-    for &(variable, up) in &branch.signs {
-        if state != State::Feasible {
-            break;
-        }
-        if !up {
-            polyhedron.negate(variable);
-        }
-        (state, pinned) = (polyhedron.restrict(variable, go_on), None);
-    }
-    (state, pinned)
+    polyhedron.impose(branch.zero.iter().copied(), branch.signs.iter().copied(), go_on)
 }
 
 /// The sum that proves a polyhedron empty, −1 whatever the unknowns.
-pub(super) fn contradiction(forms: &Forms, empty: &Polyhedron, pinned: Option<usize>) -> Option<Sum> {
-    let sum = in_units(empty.contradiction(pinned)?.0, &BigInt::one());
-    let constant: BigRational = sum
-        .iter()
-        .filter_map(|(variable, factor)| Some(factor * forms.forms.get(variable.checked_sub(forms.unknowns)?)?.last()?))
-        .sum();
-    let unit = -constant;
-    unit.is_positive().then(|| sum.into_iter().map(|(variable, factor)| (variable, factor / &unit)).collect())
+pub(super) fn contradiction(empty: &Polyhedron, pinned: Option<usize>) -> Option<Sum> {
+    empty.contradiction(pinned).map(|(factors, sum)| in_units(factors, &-sum))
 }
 
 /// The same from Farkas' y over the rows of an LCP: the factors are y for w and −Mᵀy for z.
@@ -136,7 +120,7 @@ impl Search<'_> {
             State::Empty => {
                 self.share += share;
                 // What made it empty is a row: the contradiction itself.
-                return contradiction(self.forms, polyhedron, pinned).map(Tree::Cut).ok_or(NoTree::Stopped);
+                return contradiction(polyhedron, pinned).map(Tree::Cut).ok_or(NoTree::Stopped);
             }
             State::Feasible if !(self.progress)(self.nodes, self.share) => return Err(NoTree::Stopped),
             State::Feasible => {}
