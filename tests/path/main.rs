@@ -32,4 +32,5 @@ mod stages_in_space;
 mod sweep;
 mod sweep_points;
 mod trace_in_space;
+mod turning_back;
 mod two_nodes;

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use crate::contact::system::ContactSystem;
+use crate::contact::system::{ContactSystem, JointLoad};
 
 /// Everything that is given moves in proportion from t = 0 to t = 1.
 pub(super) struct Course {
@@ -30,12 +30,12 @@ impl Course {
 
     /// RF − R·(g, 0) at t, over the joints.
     pub(super) fn load_at(&self, system: &ContactSystem, t: f64) -> DVector<f64> {
-        load(system, &self.factors_at(t), &self.gaps_at(t), |value| value)
+        load(system, &self.factors_at(t), &self.gaps_at(t))
     }
 
     /// Σ |terms| of the load at t.
     pub(super) fn sizes_at(&self, system: &ContactSystem, t: f64) -> DVector<f64> {
-        load(system, &self.factors_at(t), &self.gaps_at(t), f64::abs)
+        sizes(system, &self.factors_at(t), &self.gaps_at(t))
     }
 
     fn increments(ends: &[Vec<f64>; 2]) -> Vec<f64> {
@@ -44,19 +44,34 @@ impl Course {
 
     /// The load's rate, per unit of t.
     pub(super) fn rate(&self, system: &ContactSystem) -> DVector<f64> {
-        load(system, &Self::increments(&self.factors), &Self::increments(&self.gaps), |value| value)
+        load(system, &Self::increments(&self.factors), &Self::increments(&self.gaps))
     }
 
     /// Σ |terms| of the load's rate.
     pub(super) fn rate_sizes(&self, system: &ContactSystem) -> DVector<f64> {
-        load(system, &Self::increments(&self.factors), &Self::increments(&self.gaps), f64::abs)
+        sizes(system, &Self::increments(&self.factors), &Self::increments(&self.gaps))
     }
 }
 
-/// Σ factor·RF − R·(g, 0), each term as `term` takes it (itself, or its size).
-fn load(system: &ContactSystem, factors: &[f64], gaps: &[f64], term: impl Fn(f64) -> f64) -> DVector<f64> {
+/// Σ factor·RF − R·(g, 0).
+fn load(system: &ContactSystem, factors: &[f64], gaps: &[f64]) -> DVector<f64> {
+    sum(system, factors, gaps, |load| &load.vector, |value| value)
+}
+
+/// Σ |terms| of that: RF of a case was itself summed from larger ones.
+fn sizes(system: &ContactSystem, factors: &[f64], gaps: &[f64]) -> DVector<f64> {
+    sum(system, factors, gaps, |load| &load.terms, f64::abs)
+}
+
+fn sum(
+    system: &ContactSystem,
+    factors: &[f64],
+    gaps: &[f64],
+    of_case: impl Fn(&JointLoad) -> &DVector<f64>,
+    term: impl Fn(f64) -> f64,
+) -> DVector<f64> {
     let mut sum = DVector::zeros(system.joint_count());
-    let cases = system.loads.iter().zip(factors).map(|(load, factor)| (load.vector.column(0), *factor));
+    let cases = system.loads.iter().zip(factors).map(|(load, factor)| (of_case(load).column(0), *factor));
     let columns = gaps.iter().enumerate().map(|(i, gap)| (system.stiffness.column(i), -gap));
     for (column, factor) in cases.chain(columns) {
         if factor != 0.0 {

@@ -8,6 +8,7 @@
 //! values to this one's.
 
 mod beyond;
+mod condensed;
 mod course;
 mod energy;
 mod event;

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
+use super::condensed::Condensed;
 use super::released::Released;
 use super::standing::{Laws, Normal, Sense, Standing, Tangential, joint_scales};
 use crate::contact::polygon::Polygon;
@@ -48,6 +49,8 @@ pub(super) struct RateProblem<'a> {
     pub(super) contact: ContactLcp,
     released: Released,
     rate: &'a DVector<f64>,
+    /// Σ |terms| of the load's rate.
+    sizes: &'a DVector<f64>,
 }
 
 /// How the rate problem ends.
@@ -97,23 +100,27 @@ fn moved(laws: Laws<'_>, meaning: RowId) -> (usize, f64) {
 }
 
 impl<'a> RateProblem<'a> {
-    /// Writes the rate problem of a standing under the load's rate; `None` where the released joints have no stiffness
-    /// matrix that can be factorized.
-    pub(super) fn new(laws: Laws<'a>, standing: &Standing, rate: &'a DVector<f64>) -> Option<RateProblem<'a>> {
+    /// Writes the rate problem of a standing under the load's rate, `sizes` being its Σ |terms|; `None` where the released
+    /// joints have no stiffness matrix that can be factorized.
+    pub(super) fn new(
+        laws: Laws<'a>,
+        standing: &Standing,
+        (rate, sizes): (&'a DVector<f64>, &'a DVector<f64>),
+    ) -> Option<RateProblem<'a>> {
         let pairs = &laws.problem.system.pairs;
         let mut joints: Vec<usize> = (0..pairs.len()).filter(|&i| standing.is_open(i)).collect();
         let free = (0..pairs.len()).filter(|&i| standing.tangential[i] == Tangential::Free);
         joints.extend(free.filter_map(|i| pairs[i].plane_tangential()));
         let released = Released::new(&laws.problem.system, joints)?;
-        let contact = write(laws, standing, &released, rate);
-        Some(RateProblem { laws, contact, released, rate })
+        let contact = write(laws, standing, &released, (rate, sizes));
+        Some(RateProblem { laws, contact, released, rate, sizes })
     }
 
-    /// Solves it; `sizes`: Σ |terms| of the load's rate.
-    pub(super) fn solve(&self, standing: &Standing, sizes: &DVector<f64>, watch: &dyn Watch) -> (Ended, Run) {
+    /// Solves it.
+    pub(super) fn solve(&self, standing: &Standing, watch: &dyn Watch) -> (Ended, Run) {
         let run = run_scheme(&self.contact.lcp, self.contact.tie_rule(TieBreak::Lexicographic), watch);
         let joints = self.released.pick(self.rate);
-        if let Some(loose) = self.released.driven_motion(&joints, &self.released.pick(sizes)) {
+        if let Some(loose) = self.released.driven_motion(&joints, &self.released.pick(self.sizes)) {
             let mut motion = DVector::zeros(self.rate.len());
             self.released.joints.iter().zip(loose.iter()).for_each(|(&joint, v)| motion[joint] = *v);
             return (Ended::Ray { motion, p: 0.0 }, run);
@@ -231,17 +238,13 @@ impl<'a> RateProblem<'a> {
         if moving.is_empty() {
             return None;
         }
-        let mut joints: Vec<usize> =
-            moving.iter().flat_map(|meaning| [moved(self.laws, *meaning).0, meaning.pair]).collect();
-        joints.sort_unstable();
-        joints.dedup();
-        let stiffness = condensed(self.laws, released, &joints);
-        let place = |joint: usize| joints.binary_search(&joint).unwrap_or_default();
+        let joints = moving.iter().flat_map(|meaning| [moved(self.laws, *meaning).0, meaning.pair]).collect();
+        let stiffness = Condensed::new(self.laws, released, joints);
         let rows: Vec<Vec<(usize, f64)>> =
             moving.iter().map(|row| terms(self.laws, *row, standing.is_open(row.pair))).collect();
         let matrix = DMatrix::from_fn(moving.len(), moving.len(), |a, b| {
             let (joint, sign) = moved(self.laws, moving[b]);
-            let entry = |(row, by): &(usize, f64)| by * stiffness[(place(*row), place(joint))];
+            let entry = |(row, by): &(usize, f64)| by * stiffness.entry(*row, joint);
             sign * rows[a].iter().map(entry).sum::<f64>()
         });
         Some(matrix.lu())
@@ -277,17 +280,6 @@ fn search(lcp: &MirroredLcp) -> Option<(Vec<f64>, Vec<usize>)> {
     })
 }
 
-/// R of the given joints, the released ones condensed out. (An open pair's normal joint among them has no entry left.)
-fn condensed(laws: Laws<'_>, released: &Released, joints: &[usize]) -> DMatrix<f64> {
-    let r = &laws.problem.system.stiffness;
-    let own = DMatrix::from_fn(joints.len(), joints.len(), |a, b| r[(joints[a], joints[b])]);
-    if released.joints.is_empty() {
-        return own;
-    }
-    let across = DMatrix::from_fn(released.joints.len(), joints.len(), |a, b| r[(released.joints[a], joints[b])]);
-    own - across.transpose() * released.solve_many(&across)
-}
-
 /// The primary rows: all normal ones, then the tangential ones.
 fn primary_rows(laws: Laws<'_>, standing: &Standing) -> Vec<Row> {
     let pairs = &laws.problem.system.pairs;
@@ -307,20 +299,15 @@ fn primary_rows(laws: Laws<'_>, standing: &Standing) -> Vec<Row> {
 }
 
 /// Writes the LCP, dimensionless as that of eq. (8).
-fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVector<f64>) -> ContactLcp {
+///
+/// What of q may be rounding is 0. Where a reversal finds a part in neutral equilibrium, such rows may be all there are: read
+/// as rates they would have no answer, for nothing resists the motion that is free.
+fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: (&DVector<f64>, &DVector<f64>)) -> ContactLcp {
     let system = &*laws.problem.system;
     let primary = primary_rows(laws, standing);
     let count = primary.len();
-    let mut joints: Vec<usize> = primary.iter().flat_map(|row| [row.joint, row.pair]).collect();
-    joints.sort_unstable();
-    joints.dedup();
-    let place = |joint: usize| joints.binary_search(&joint).unwrap_or_default();
-    let stiffness = condensed(laws, released, &joints);
-    let follow = released.solve(&released.pick(rate));
-    let mut load = rate.clone();
-    for (&joint, v) in released.joints.iter().zip(follow.iter()) {
-        load.axpy(-v, &system.stiffness.column(joint), 1.0);
-    }
+    let stiffness = Condensed::new(laws, released, primary.iter().flat_map(|row| [row.joint, row.pair]).collect());
+    let (load, noise) = stiffness.load(laws, released, rate);
     let normal_of = |pair: usize| primary.iter().position(|row| row.pair == pair && row.couple == RowKind::Normal);
     let meaning_of = |row: &Row| RowId { pair: row.pair, couple: row.couple };
     // Of a couple of both senses S holds λ_τ alone: the LCP adds f λ_n and makes the mirror.
@@ -333,13 +320,16 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
 
     let mut q: DVector<f64> = DVector::from_fn(count, |i, _| {
         let row = &primary[i];
-        sum(&terms(laws, meaning_of(row), standing.is_open(row.pair)), &|joint| load[joint])
+        let terms = terms(laws, meaning_of(row), standing.is_open(row.pair));
+        let noise: f64 = terms.iter().map(|(joint, by)| by.abs() * noise[*joint]).sum();
+        Some(sum(&terms, &|joint| load[joint])).filter(|q| q.abs() > noise).unwrap_or_default()
     });
+    let pressed = |pair: usize| normal_of(pair).map_or(0.0, |normal| q[normal]);
     let mirrors_q = primary
         .iter()
         .enumerate()
         .filter(|(_, row)| row.mirrored)
-        .map(|(i, row)| 2.0 * laws.friction(row.pair) * load[row.pair] - q[i]);
+        .map(|(i, row)| 2.0 * laws.friction(row.pair) * pressed(row.pair) - q[i]);
     let largest = mirrors_q.fold(q.amax(), |most: f64, q| most.max(q.abs()));
     let stiffness_unit = power_of_two(system.stiffness.diagonal().amax());
     let force_unit = power_of_two(largest);
@@ -347,7 +337,7 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: &DVecto
     let rows: Vec<Vec<(usize, f64)>> = primary.iter().map(stored).collect();
     let base = DMatrix::from_fn(count, count, |i, j| {
         let (joint, sign) = moved(laws, meaning_of(&primary[j]));
-        sign * sum(&rows[i], &|row| stiffness[(place(row), place(joint))]) / stiffness_unit
+        sign * sum(&rows[i], &|row| stiffness.entry(row, joint)) / stiffness_unit
     });
     let scales = joint_scales(system) / stiffness_unit.sqrt();
     let mut rows: Vec<RowId> = primary.iter().map(meaning_of).collect();

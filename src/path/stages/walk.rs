@@ -89,11 +89,11 @@ impl<'a> Walk<'a> {
         way: &mut Way,
     ) -> Result<Stretch, PathError> {
         let system = &*self.place.laws.problem.system;
-        let Some(problem) = RateProblem::new(self.place.laws, &self.standing, rate) else {
+        let Some(problem) = RateProblem::new(self.place.laws, &self.standing, (rate, sizes)) else {
             return Err(breakdown(t, "the stiffness of the open pairs is not positive definite"));
         };
         let start = Instant::now();
-        let (ended, run) = problem.solve(&self.standing, sizes, self.place.watch);
+        let (ended, run) = problem.solve(&self.standing, self.place.watch);
         self.lemke_seconds += start.elapsed().as_secs_f64();
         way.pivots += run.pivots.count();
         self.last_run = Some((run, problem.contact.clone()));
@@ -253,6 +253,8 @@ impl<'a> Follower<'a> for Walk<'a> {
         let none = DVector::zeros(system.joint_count());
         let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };
         let (mut t, mut reached, mut events, mut jumps) = (0.0, Vec::new(), 0, 0);
+        // Where the jumps that follow one another began.
+        let mut began = 0.0;
         if rate.amax() == 0.0 {
             self.place.factors = course.factors_at(1.0);
             way.moments.push(self.moment(1.0, false));
@@ -274,13 +276,13 @@ impl<'a> Follower<'a> for Walk<'a> {
                     to
                 }
                 Stretch::End { .. } if jumps == JUMPS => {
-                    return Err(breakdown(
-                        t,
-                        &format!("{JUMPS} jumps follow one another, and no rates lead on from any"),
-                    ));
+                    let why =
+                        format!("no rates lead on from here, nor from any of {JUMPS} states found a little further on");
+                    return Err(breakdown(began, &why));
                 }
                 Stretch::End { motion, p } => match self.beyond(course, t, (&motion, p), &mut way)? {
                     Ok(to) => {
+                        began = if jumps == 0 { t } else { began };
                         jumps += 1;
                         to
                     }

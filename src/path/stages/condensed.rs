@@ -1,0 +1,70 @@
+//! Stiffness and load's rate of the joints of a rate problem, once the released joints follow them.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::released::Released;
+use super::standing::{Laws, joint_scales};
+use crate::lcp::problem::NOISE;
+
+/// See the module.
+pub(super) struct Condensed {
+    /// The joints, in increasing order.
+    joints: Vec<usize>,
+    stiffness: DMatrix<f64>,
+    /// R_FF⁻¹ R_FJ: what the released joints F take back per unit of each joint; 0 × J where none is released.
+    follow: DMatrix<f64>,
+}
+
+impl Condensed {
+    /// R of the given joints, the released ones condensed out. (An open pair's normal joint among them has no entry left.)
+    pub(super) fn new(laws: Laws<'_>, released: &Released, mut joints: Vec<usize>) -> Condensed {
+        joints.sort_unstable();
+        joints.dedup();
+        let r = &laws.problem.system.stiffness;
+        let own = DMatrix::from_fn(joints.len(), joints.len(), |a, b| r[(joints[a], joints[b])]);
+        if released.joints.is_empty() {
+            let follow = DMatrix::zeros(0, joints.len());
+            return Condensed { joints, stiffness: own, follow };
+        }
+        let across = DMatrix::from_fn(released.joints.len(), joints.len(), |a, b| r[(released.joints[a], joints[b])]);
+        let follow = released.solve_many(&across);
+        Condensed { stiffness: own - across.transpose() * &follow, joints, follow }
+    }
+
+    fn place(&self, joint: usize) -> usize {
+        self.joints.binary_search(&joint).unwrap_or_default()
+    }
+
+    /// Entry of two of its joints.
+    pub(super) fn entry(&self, row: usize, column: usize) -> f64 {
+        self.stiffness[(self.place(row), self.place(column))]
+    }
+
+    /// The load's rate in its joints, and what of it may be rounding; both over all joints, and of no meaning in others.
+    /// `sizes`: Σ |terms| of the load's rate.
+    ///
+    /// R is known to some ε √(R_ii R_kk), so that every force of what follows is known to NOISE times such terms. A released
+    /// joint whose force is wrong by that follows wrongly, and each joint feels it as its own dislocation moves that one.
+    pub(super) fn load(
+        &self,
+        laws: Laws<'_>,
+        released: &Released,
+        (rate, sizes): (&DVector<f64>, &DVector<f64>),
+    ) -> (DVector<f64>, DVector<f64>) {
+        let system = &*laws.problem.system;
+        let scales = joint_scales(system);
+        let follow = released.solve(&released.pick(rate));
+        let (mut load, mut terms) = (rate.clone(), 0.0);
+        for (&joint, v) in released.joints.iter().zip(follow.iter()) {
+            load.axpy(-v, &system.stiffness.column(joint), 1.0);
+            terms += scales[joint] * v.abs();
+        }
+        let own = |joint: usize| NOISE * (sizes[joint] + scales[joint] * terms);
+        let mut noise = DVector::from_fn(load.len(), |joint, _| own(joint));
+        for (&joint, follow) in self.joints.iter().zip(self.follow.column_iter()) {
+            let others = released.joints.iter().zip(follow.iter());
+            noise[joint] += others.map(|(&other, by)| by.abs() * own(other)).sum::<f64>();
+        }
+        (load, noise)
+    }
+}
