@@ -215,14 +215,23 @@ pub fn write_limit(
 ) -> io::Result<()> {
     let number = |value: f64| with_unit(&exact(value), unit);
     let from = number(found.from);
-    let Some((beyond, kind)) = found.beyond else {
+    let Some(beyond) = &found.beyond else {
         let text = format!("{name} from {from}: shakes down as far as was looked, to {}", number(found.shakes_down));
         style.paragraph(out, Role::Good, &text)?;
         return write_every_start(out, found, &number, style);
     };
-    let text = format!("{name} from {from}: the largest end that shakes down is {}", number(found.shakes_down));
+    let seen = if beyond.kind == Kind::Undecided { "found to shake" } else { "that shakes" };
+    let text = format!("{name} from {from}: the largest end {seen} down is {}", number(found.shakes_down));
     style.paragraph(out, Role::Accent, &text)?;
-    style.paragraph(out, Role::Plain, &format!("at {} it {}", number(beyond), word(kind)))?;
+    let mut text = match (&beyond.why, beyond.kind) {
+        (Some(why), _) => format!("at {} nothing is decided, for {why}", number(beyond.value)),
+        (None, Kind::Undecided) => format!("at {} it is undecided", number(beyond.value)),
+        (None, kind) => format!("at {} it {}", number(beyond.value), word(kind)),
+    };
+    if let Some((value, kind)) = beyond.decided {
+        text += &format!("; at {} it {}", number(value), word(kind));
+    }
+    style.paragraph(out, Role::Plain, &text)?;
     write_every_start(out, found, &number, style)
 }
 

@@ -166,6 +166,12 @@ struct ShakedownReport<'a> {
     shakes_down: f64,
     beyond: Option<f64>,
     kind_beyond: Option<Kind>,
+    /// Where the history broke down beyond: why.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    why_beyond: Option<String>,
+    /// Where it is undecided beyond: a value farther out that does not shake down, and what it comes to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    decided_beyond: Option<(f64, Kind)>,
     /// Up to where it shakes down from every start.
     from_every_start: Option<f64>,
     #[serde(rename = "static")]
@@ -297,8 +303,10 @@ impl Session {
             load: &name,
             from: found.from,
             shakes_down: found.shakes_down,
-            beyond: found.beyond.map(|(value, _)| value),
-            kind_beyond: found.beyond.map(|(_, kind)| kind),
+            beyond: found.beyond.as_ref().map(|beyond| beyond.value),
+            kind_beyond: found.beyond.as_ref().map(|beyond| beyond.kind),
+            why_beyond: found.beyond.as_ref().and_then(|beyond| beyond.why.clone()),
+            decided_beyond: found.beyond.as_ref().and_then(|beyond| beyond.decided),
             from_every_start: found.every_start.0,
             every_start: StaticReport::of(&found.every_start.1),
         };
