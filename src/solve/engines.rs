@@ -60,19 +60,27 @@ pub(super) fn covered(lcp: &Arc<MirroredLcp>, covering: PlainCovering) -> Arc<Mi
 /// Runs the working-scheme engine; the last vertex and a ray are computed afresh from the data where the equations
 /// of the last basis allow it.
 pub fn run_scheme(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> Run {
-    keep_scheme(lcp, rule, watch).0
+    run_scheme_within(lcp, rule, PIVOT_LIMIT, watch)
+}
+
+/// As [`run_scheme`], ending after `most` pivots.
+pub(super) fn run_scheme_within(lcp: &Arc<MirroredLcp>, rule: TieRule, most: usize, watch: &dyn Watch) -> Run {
+    let mut engine = SchemeEngine::new(Arc::clone(lcp), rule);
+    let mut run = watched(&mut engine, "Lemke", most, watch);
+    polish(lcp, &mut run);
+    run
 }
 
 /// As [`run_scheme`], with the dictionary of the answer, ready to be followed along a change of the load.
 pub(super) fn keep_scheme(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> (Run, Option<Parametric>) {
     let mut engine = SchemeEngine::new(Arc::clone(lcp), rule);
-    let mut run = watched(&mut engine, "Lemke", watch);
+    let mut run = watched(&mut engine, "Lemke", PIVOT_LIMIT, watch);
     polish(lcp, &mut run);
     (run, engine.into_parametric())
 }
 
-/// Steps an engine to its end; `watch` hears of its progress and may stop it.
-fn watched<E: Engine>(engine: &mut E, name: &str, watch: &dyn Watch) -> Run<E::Number> {
+/// Steps an engine to its end, at most `most` pivots; `watch` hears of its progress and may stop it.
+fn watched<E: Engine>(engine: &mut E, name: &str, most: usize, watch: &dyn Watch) -> Run<E::Number> {
     let mut first_p = 0.0;
     let mut observer = |pivot: &Pivot| {
         if pivot.step == 0 {
@@ -87,7 +95,7 @@ fn watched<E: Engine>(engine: &mut E, name: &str, watch: &dyn Watch) -> Run<E::N
         }
         ControlFlow::Continue(())
     };
-    run(engine, PIVOT_LIMIT, &mut observer)
+    run(engine, most, &mut observer)
 }
 
 /// Computes the last vertex and the ray afresh from the data, where the equations of the last basis allow it.
@@ -180,7 +188,7 @@ pub fn written_out(lcp: &MirroredLcp) -> Lcp<f64> {
 /// Runs the dense tableau in f64.
 pub fn run_tableau(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> Run {
     let mut engine = Tableau::<f64>::new(&written_out(lcp), rule);
-    let mut run = watched(&mut engine, "tableau", watch);
+    let mut run = watched(&mut engine, "tableau", PIVOT_LIMIT, watch);
     polish(lcp, &mut run);
     run
 }
@@ -214,7 +222,7 @@ pub fn run_exact_contact(
 }
 
 fn run_exact(problem: Lcp<BigRational>, rule: TieRule, watch: &dyn Watch) -> Run<BigRational> {
-    watched(&mut Exact::new(problem, rule, watch), "exact arithmetic", watch)
+    watched(&mut Exact::new(problem, rule, watch), "exact arithmetic", PIVOT_LIMIT, watch)
 }
 
 /// An exact run in f64, forces divided by `force` and displacements by `length` (powers of two).

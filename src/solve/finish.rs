@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::engines::{PIVOT_LIMIT, kind};
+use super::engines::kind;
 use super::prepared::{Geometry, Prepared};
 use crate::answer::check::check_contact;
 use crate::answer::pairs::JointState;
@@ -316,7 +316,7 @@ pub(super) fn fail_check(answer: &mut Answer) {
 pub(super) fn empty_answer(run: &Run, force_unit: f64, rules: AttemptRules, size: Size) -> Answer {
     let outcome = kind(&run.outcome);
     let failure = match &run.outcome {
-        Outcome::PivotLimit => Some(format!("the limit of {} pivots was reached.", PIVOT_LIMIT)),
+        Outcome::PivotLimit => Some(format!("{} pivots were made, and no end was in sight.", run.pivots.count() - 1)),
         Outcome::Cycle(Cycle { first, again }) => Some(format!(
             "the tie-break {} cycles: the basis after pivot {first} came back after pivot {again}, at p = {}.",
             rules.tie_break,

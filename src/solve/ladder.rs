@@ -157,7 +157,7 @@ impl Ladder {
             (None, OutcomeKind::Ray) => "ended in a ray",
             (None, OutcomeKind::CheckFailed) => "found a state that failed its check",
             (None, OutcomeKind::PivotLimit) if self.first.cycled => "cycled",
-            (None, OutcomeKind::PivotLimit) => "reached the limit of pivots",
+            (None, OutcomeKind::PivotLimit) => "came to no end in many pivots",
             (None, _) => "broke down",
         };
         let found = self.tried.last().map_or(String::new(), |last| last.rules.to_string());

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::bimatrix::equilibrium;
-use super::engines::{EXACT_ROWS, covered, run_exact_plain, run_scheme, run_tableau};
+use super::engines::{EXACT_ROWS, PIVOT_LIMIT, covered, run_exact_plain, run_scheme_within, run_tableau};
 use super::error::SolveError;
 use super::finish::{empty_answer, fail_check};
 use super::ladder::{EXACT_BUDGET, LAST_RESORT, Ladder, others};
@@ -48,6 +48,10 @@ const SPECIAL: [(AttemptEngine, Special, &str); 2] = [
 const FEW_ROWS: usize = 9;
 /// A patient search of all bases ends after this time.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// Pivots after which other coverings are tried before a run under the default rules goes on to the limit of pivots: more
+/// than the 2¹⁴ that the known examples of exponential length (Murty, Fathi) take at 14 rows, as many as 200 rows take in some
+/// seconds.
+const FIRST_PIVOTS: usize = 20_000;
 /// Random covering vectors that are tried.
 const RANDOM_COVERINGS: u64 = 3;
 
@@ -68,6 +72,8 @@ pub(super) struct PlainRules {
     covering: PlainCovering,
     tie_break: TieBreak,
     engine: Engine,
+    /// A run of the scheme ends after so many pivots.
+    most_pivots: usize,
 }
 
 impl From<PlainRules> for AttemptRules {
@@ -96,7 +102,12 @@ impl<'a> PlainProblem<'a> {
 
     /// The user's rules under the problem's own covering.
     pub(super) fn rules(&self, rules: Rules) -> PlainRules {
-        PlainRules { covering: self.covering, tie_break: rules.tie_break, engine: rules.engine }
+        PlainRules {
+            covering: self.covering,
+            tie_break: rules.tie_break,
+            engine: rules.engine,
+            most_pivots: PIVOT_LIMIT,
+        }
     }
 }
 
@@ -114,7 +125,7 @@ pub(super) fn attempt_plain(
     };
     let start = Instant::now();
     let mut run = match rules.engine {
-        Engine::Scheme => run_scheme(&lcp, rule, watch),
+        Engine::Scheme => run_scheme_within(&lcp, rule, rules.most_pivots, watch),
         Engine::Tableau => run_tableau(&lcp, rule, watch),
         Engine::Exact if lcp.size() > EXACT_ROWS => {
             return Err(SolveError::TooLargeForExact { what: "rows", found: lcp.size(), most: EXACT_ROWS });
@@ -169,12 +180,14 @@ pub(super) fn solve_plain_judged(
     rules: Rules,
     watch: &dyn Watch,
 ) -> Result<Solved, SolveError> {
-    let mut first = attempt_plain(problem, problem.rules(rules), watch)?;
+    let asked = problem.rules(rules);
+    let own = PlainRules { most_pivots: if rules.are_default() { FIRST_PIVOTS } else { asked.most_pivots }, ..asked };
+    let mut first = attempt_plain(problem, own, watch)?;
     if first.answer.is_answer() {
         return Ok(first);
     }
     if rules.are_default() {
-        return retry(problem, first, problem.rules(rules), watch);
+        return retry(problem, first, own, watch);
     }
     let other = attempt_plain(problem, problem.rules(Rules::default()), watch)?;
     if other.answer.is_answer() {
@@ -358,8 +371,10 @@ fn fail_ray(solved: &mut Solved) {
     }
 }
 
-/// What is tried after a first run without an answer, in order. Where rounding is to blame exact arithmetic comes
-/// first; after a ray that is no rounding, other coverings.
+/// What is tried after a first run without an answer, in order. Where rounding is to blame it is the sizes of the rows as
+/// covering, then exact arithmetic; after a ray that is no rounding, other coverings. These may come to an answer in a few
+/// pivots where the first run came to none in many: so it goes on only after them, and exact arithmetic, which is slower,
+/// comes last.
 fn rungs(problem: &PlainProblem, first: &Solved, own: PlainRules) -> Vec<PlainRules> {
     if first.plain_ray.as_ref().is_some_and(|ray| ray.whatever_the_covering) {
         return Vec::new();
@@ -375,14 +390,22 @@ fn rungs(problem: &PlainProblem, first: &Solved, own: PlainRules) -> Vec<PlainRu
     // The covering by rows may happen to be a multiple of d.
     rungs.retain(|rules| !is_multiple(&covered(&problem.lcp, rules.covering), &problem.lcp));
     rungs.push(PlainRules { tie_break: TieBreak::Random(1), ..own });
+    let unfinished = first.answer.outcome == OutcomeKind::PivotLimit && !first.cycled;
+    if unfinished {
+        rungs.push(PlainRules { most_pivots: PIVOT_LIMIT, ..own });
+    }
     if problem.lcp.size() <= EXACT_ROWS {
         let exact = PlainRules { engine: Engine::Exact, ..own };
         match first.plain_ray.as_ref().map(|ray| ray.exact) {
             // Exact arithmetic has nothing to add.
             Some(Some(true)) => {}
             Some(None) => rungs.push(exact),
-            // A ray, or another end, by rounding.
-            Some(Some(false)) | None => rungs.insert(0, exact),
+            None if unfinished => rungs.push(exact),
+            // A ray, or another end, by rounding: first the covering that makes little of it where rows differ in size.
+            Some(Some(false)) | None => {
+                let by_rows = rungs.iter().position(|rules| rules.covering == PlainCovering::Rows);
+                rungs.insert(by_rows.map_or(0, |at| at + 1), exact);
+            }
         }
     }
     rungs

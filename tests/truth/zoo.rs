@@ -306,6 +306,21 @@ fn another_covering_is_tried_after_a_ray() {
     }
 }
 
+/// Fathi's example, M = A Aᵀ of Murty's triangular A and q = −e: 2ⁿ pivots under the default rules, with e₁
+/// the answer, because the first column of M is (1, 2, 2, …). It is found by another covering in the two pivots that bring z₁ in.
+#[test]
+fn a_path_of_exponential_length_is_left_for_another_covering() {
+    let n = 20;
+    let (a, _) = murty(n);
+    let product = |i: usize, j: usize| (0..n).map(|k| a[i][k] * a[j][k]).sum();
+    let matrix: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| product(i, j)).collect()).collect();
+    let answer = solved(&matrix, &vec![-1.0; n], None).answer;
+    assert_eq!(answer.attempts[0].outcome, OutcomeKind::PivotLimit);
+    assert_eq!((answer.outcome, answer.pivot_count, answer.attempts.len()), (OutcomeKind::Normal, 2, 2));
+    let z = answer.solution.expect("z").z;
+    assert!(z.iter().enumerate().all(|(i, z)| *z == f64::from(u8::from(i == 0))), "{z:?}");
+}
+
 /// No attempt is made twice: the list has no rule twice.
 #[test]
 fn retries_never_repeat_a_run() {

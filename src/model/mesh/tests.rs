@@ -216,6 +216,16 @@ fn sets_in_parts_are_one_set_and_surfaces_are_not() {
     assert_eq!(problems[0].line, 17);
 }
 
+/// What joins nodes is not read, and told, for without it the structure is another one; what is of the material is not.
+#[test]
+fn keywords_that_join_nodes_are_told() {
+    let inp = "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n*ELEMENT, TYPE=CPS4, ELSET=E\n1, 1, 2, 3, 4\n\
+        *ELASTIC\n1, 0\n*Equation\n2\n1, 1, 1, 2, 1, -1\n*RIGID BODY, NSET=E, REF NODE=1\n*EQUATION\n2\n3, 1, 1, 4, 1, -1\n";
+    let mesh = read_abaqus(inp.as_bytes(), "a.inp", None).unwrap_or_else(|problems| panic!("{problems:?}"));
+    let [note] = mesh.notes.as_slice() else { panic!("{:?}", mesh.notes) };
+    assert!(note.starts_with("*EQUATION, *RIGID BODY join nodes and are not read, the first at a.inp:10: "), "{note}");
+}
+
 #[test]
 fn lines_in_pieces_and_inside_are_no_edge() {
     let apart = MSH2.replace("3 1 2 7 1 10 20", "3 1 2 7 1 40 50");

@@ -22,6 +22,20 @@ use types::ElementType;
 /// Keywords that make a mesh; one that differs in a letter is taken for a slip of the pen.
 const KEYWORDS: [&str; 8] = ["NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "INCLUDE", "PART", "INSTANCE"];
 
+/// Keywords that join nodes to one another. A structure without them is another one, unless the scenario joins them.
+const JOINS: [&str; 10] = [
+    "TIE",
+    "EQUATION",
+    "MPC",
+    "RIGID BODY",
+    "COUPLING",
+    "KINEMATIC COUPLING",
+    "DISTRIBUTING COUPLING",
+    "SHELL TO SOLID COUPLING",
+    "EMBEDDED ELEMENT",
+    "CYCLIC SYMMETRY MODEL",
+];
+
 /// What the data lines that come next belong to.
 enum Mode {
     Skip,
@@ -44,6 +58,8 @@ struct Reader<'a> {
     begun: Option<(u64, Vec<u64>, Place)>,
     parts: usize,
     instances: usize,
+    /// Each keyword of [`JOINS`] once, and where it stands first.
+    joins: Vec<(&'static str, Place)>,
 }
 
 /// Reads a file.
@@ -60,6 +76,7 @@ pub fn read(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<RawMesh, 
         begun: None,
         parts: 0,
         instances: 0,
+        joins: Vec::new(),
     };
     let mut has_keyword = false;
     while let Some(card) = reader.cards.next()? {
@@ -87,6 +104,7 @@ pub fn read(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<RawMesh, 
     reader.end_of_data()?;
     reader.mesh.files.clone_from(&reader.cards.files);
     reader.note_merged();
+    reader.note_joins();
     reader.groups()?;
     Ok(reader.mesh)
 }
@@ -217,6 +235,11 @@ impl Reader<'_> {
                     );
                 }
                 let structural = ["HEADING", "END PART", "ASSEMBLY", "END ASSEMBLY", "END INSTANCE", "PREPRINT"];
+                if let Some(join) = JOINS.iter().find(|join| **join == other)
+                    && self.joins.iter().all(|(known, _)| known != join)
+                {
+                    self.joins.push((join, place));
+                }
                 if !structural.contains(&other) {
                     self.leave_alone(format!("*{}", quoted(other).trim_matches('"')));
                 }
@@ -356,6 +379,18 @@ impl Reader<'_> {
             };
             self.mesh.notes.push(format!("{what}, the first at {}: {}", self.mesh.line_of(place), quoted(name)));
         }
+    }
+
+    /// Notes what joins nodes and was left alone.
+    fn note_joins(&mut self) {
+        let Some((_, first)) = self.joins.first() else { return };
+        let words: Vec<String> = self.joins.iter().map(|(join, _)| format!("*{join}")).collect();
+        let (join, is) = if words.len() == 1 { ("joins", "is") } else { ("join", "are") };
+        self.mesh.notes.push(format!(
+            "{} {join} nodes and {is} not read, the first at {}: where they belong together, say so in the scenario (`ties`, `rigid`)",
+            words.join(", "),
+            self.mesh.line_of(*first)
+        ));
     }
 
     /// Sets and surfaces as groups.
