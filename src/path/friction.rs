@@ -128,6 +128,8 @@ pub(super) struct Place {
     /// path.
     pub(super) margins: Vec<f64>,
     pub(super) slopes: Vec<f64>,
+    /// What each margin and slope is relative to.
+    pub(super) sizes: Vec<f64>,
 }
 
 /// Where the path goes on in another scheme, and whether it jumped there.
@@ -218,7 +220,8 @@ impl Follower<'_> {
         let point = vertex(&contact.lcp, basis)?;
         let lcp = rate_lcp(&problem, &contact, &point, &self.rates(value), self.sign);
         let slope = rate(&lcp, basis)?;
-        let mut place = Place { value, margins: Vec::new(), slopes: Vec::new(), problem, contact, point };
+        let mut place =
+            Place { value, margins: Vec::new(), slopes: Vec::new(), sizes: Vec::new(), problem, contact, point };
         let largest = |values: &[f64]| {
             let size = values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
             if size > 0.0 { size } else { 1.0 }
@@ -231,13 +234,14 @@ impl Follower<'_> {
                 && place.problem.laws[meaning.pair].fixed_bound() == 0.0
                 && place.contact.normal_row[meaning.pair]
                     .is_some_and(|normal| basis.active.binary_search(&normal).is_ok() != place.contact.swapped[normal]);
-            let (margin, slope) = match (free, is_active) {
-                (true, _) => (1.0, 0.0),
-                (_, true) => (place.point.z[row] / length, slope.z[row] / length),
-                _ => (place.point.w[row] / force, slope.w[row] / force),
+            let (margin, slope, size) = match (free, is_active) {
+                (true, _) => (1.0, 0.0, 1.0),
+                (_, true) => (place.point.z[row], slope.z[row], length),
+                _ => (place.point.w[row], slope.w[row], force),
             };
-            place.margins.push(margin);
-            place.slopes.push(slope);
+            place.margins.push(margin / size);
+            place.slopes.push(slope / size);
+            place.sizes.push(size);
         }
         (place.margins.iter().chain(&place.slopes)).all(|value| value.is_finite()).then_some(place)
     }

@@ -43,8 +43,10 @@ impl Follower<'_> {
                 continue;
             };
             let cubics: Vec<Cubic> = (0..here.margins.len()).map(|k| Cubic::new(&here, &end, k, length)).collect();
-            let faithful =
-                cubics.iter().zip(&middle.margins).all(|(cubic, margin)| (cubic.at(0.5) - margin).abs() <= FAITHFUL);
+            let faithful = cubics.iter().enumerate().all(|(k, cubic)| {
+                let margin = middle.margins[k] * middle.sizes[k] / cubic.size;
+                (cubic.at(0.5) - margin).abs() <= FAITHFUL
+            });
             if !faithful && length > least {
                 step = 0.5 * length;
                 continue;
@@ -133,11 +135,20 @@ impl Follower<'_> {
 struct Cubic {
     values: [f64; 2],
     slopes: [f64; 2],
+    /// What these are relative to: one size for both ends, for where slips begin the largest of them grows from 0, and beside
+    /// itself it would be 1 from the first place on.
+    size: f64,
 }
 
 impl Cubic {
     fn new(a: &Place, b: &Place, k: usize, length: f64) -> Cubic {
-        Cubic { values: [a.margins[k], b.margins[k]], slopes: [a.slopes[k] * length, b.slopes[k] * length] }
+        let size = a.sizes[k].max(b.sizes[k]);
+        let relative = |place: &Place, margin: f64| margin * place.sizes[k] / size;
+        Cubic {
+            values: [relative(a, a.margins[k]), relative(b, b.margins[k])],
+            slopes: [relative(a, a.slopes[k] * length), relative(b, b.slopes[k] * length)],
+            size,
+        }
     }
 
     fn at(&self, s: f64) -> f64 {

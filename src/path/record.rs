@@ -8,6 +8,7 @@ use super::load::LoadPath;
 use super::on_cone::ConePath;
 use super::stages::History;
 use crate::answer::record::PairState;
+use crate::answer::rounding::{denoised, largest};
 
 /// What was followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -57,50 +58,66 @@ fn change_at(breakpoints: &[Breakpoint], place: usize) -> String {
     found.map_or(String::new(), |breakpoint| breakpoint.sentence.clone())
 }
 
+/// Places without those that repeat the one before: a path turns there in nothing but its equations (joints that reach their
+/// bounds together, a target that is reached where a scheme ends).
+fn told_once(places: impl Iterator<Item = PathPlace>) -> Vec<PathPlace> {
+    let mut told: Vec<PathPlace> = Vec::new();
+    for place in places {
+        if !(place.change.is_empty() && told.last().is_some_and(|last| last.is_as(&place))) {
+            told.push(place);
+        }
+    }
+    told
+}
+
+impl PathPlace {
+    /// Whether value, states and numbers of the pairs are those of another place, but for rounding.
+    fn is_as(&self, other: &PathPlace) -> bool {
+        let same = |of: &dyn Fn(&PairState) -> [f64; 2]| {
+            let scale = largest(self.pairs.iter().chain(&other.pairs).flat_map(of));
+            let both = self.pairs.iter().zip(&other.pairs).flat_map(|(a, b)| of(a).into_iter().zip(of(b)));
+            both.into_iter().all(|(a, b)| denoised(a - b, scale) == 0.0)
+        };
+        denoised(self.value - other.value, self.value.abs()) == 0.0
+            && self.pairs.iter().zip(&other.pairs).all(|(a, b)| a.state == b.state)
+            && same(&|pair| [pair.x_n, pair.x_t])
+            && same(&|pair| [pair.z_n, pair.z_t])
+    }
+}
+
 impl PathRecord {
     /// Of a load path; `cases` are the names of all load cases.
     pub fn of_load(path: &LoadPath, cases: &[String]) -> PathRecord {
-        let places = path
-            .factors
-            .iter()
-            .zip(&path.pairs)
-            .enumerate()
-            .map(|(knot, (&value, pairs))| PathPlace {
-                stage: None,
-                value,
-                factors: path.case_factors(value).into_iter().take(cases.len()).collect(),
-                change: change_at(&path.breakpoints, knot),
-                pairs: pairs.clone(),
-            })
-            .collect();
+        let places = path.factors.iter().zip(&path.pairs).enumerate().map(|(knot, (&value, pairs))| PathPlace {
+            stage: None,
+            value,
+            factors: path.case_factors(value).into_iter().take(cases.len()).collect(),
+            change: change_at(&path.breakpoints, knot),
+            pairs: pairs.clone(),
+        });
         PathRecord {
             followed: Followed::Load,
             name: path.parameter.name.clone(),
             cases: cases.to_vec(),
-            places,
+            places: told_once(places),
             end: path.end_sentence(),
         }
     }
 
     /// Of a friction path.
     pub fn of_friction(path: &FrictionPath) -> PathRecord {
-        let places = path
-            .samples
-            .iter()
-            .enumerate()
-            .map(|(place, (value, pairs))| PathPlace {
-                stage: None,
-                value: *value,
-                factors: Vec::new(),
-                change: change_at(&path.breakpoints, place),
-                pairs: pairs.clone(),
-            })
-            .collect();
+        let places = path.samples.iter().enumerate().map(|(place, (value, pairs))| PathPlace {
+            stage: None,
+            value: *value,
+            factors: Vec::new(),
+            change: change_at(&path.breakpoints, place),
+            pairs: pairs.clone(),
+        });
         PathRecord {
             followed: Followed::Friction,
             name: path.name.clone(),
             cases: Vec::new(),
-            places,
+            places: told_once(places),
             end: path.end_sentence(),
         }
     }
@@ -118,7 +135,7 @@ impl PathRecord {
             followed: if path.over.is_friction() { Followed::Friction } else { Followed::Load },
             name: path.name.clone(),
             cases: if path.over.is_friction() { Vec::new() } else { cases.to_vec() },
-            places: places.collect(),
+            places: told_once(places),
             end: path.end_sentence(),
         }
     }

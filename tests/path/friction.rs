@@ -1,5 +1,6 @@
 //! Friction paths and sensitivities: the frame's published intervals, a jump, differences.
 
+use serde_json::{Value, json};
 use stickslip::model::embedded;
 use stickslip::model::parameter::ParameterValues;
 use stickslip::model::scenario::Scenario;
@@ -8,6 +9,8 @@ use stickslip::path::friction::{FrictionPath, trace};
 use stickslip::path::sensitivity::sensitivity;
 use stickslip::solve::{Prepared, Solved, prepare};
 use stickslip::watch::Quiet;
+
+use super::common::lines;
 
 fn load(name: &str, set: &[(&str, f64)]) -> (Scenario, Prepared, ParameterValues) {
     let scenario = embedded::load(name).expect("embedded");
@@ -152,5 +155,35 @@ fn a_zero_at_the_end_of_a_step_is_found_there() {
         for (found, expected) in found.iter().zip(&expected) {
             assert!((found - expected).abs() < 1e-9, "{start}: {found} {expected}");
         }
+    }
+}
+
+/// Three nodes of weight 1 in a row of bars of E A = 1000 and length 1, each pushed by H = 0.2 towards the support: below f = H each
+/// holds f, and the bars take H − f, 2 (H − f), 3 (H − f). All slip at once, from nothing, and every place is told once.
+#[test]
+fn slips_that_begin_together_need_no_small_steps() {
+    let nodes = ["a", "b", "c"];
+    let bar = |from: &str, to: &str| json!({"id": format!("{from}{to}"), "nodes": [from, to], "kind": "truss", "material": "m", "section": "q"});
+    let points = |force: [f64; 2]| json!({"items": nodes.map(|node| json!({"point": {"at": node, "force": force}}))});
+    let scenario = json!({
+        "format": "stickslip/1", "title": "t", "parameters": {"f": 0.5},
+        "nodes": {"a": [0, 0], "b": [1, 0], "c": [2, 0], "s": [3, 0]},
+        "materials": {"m": {"E": 1000, "nu": 0}}, "sections": {"q": {"area": 1}},
+        "bars": [bar("a", "b"), bar("b", "c"), bar("c", "s")],
+        "supports": [{"at": "s", "fixed": ["x", "y"]}],
+        "contacts": nodes.map(|node| json!({"id": format!("at-{node}"), "node": node, "against": "ground", "normal": [0, 1], "friction": "f"})),
+        "loads": {"weight": points([0.0, -1.0]), "push": points([0.2, 0.0])},
+    });
+    let mut session = lines::read(&scenario.to_string());
+    let path = lines::report(&mut session, "trace f to 0.1 of x_t at-a, z_t at-a").unwrap();
+    let numbers = |value: &Value| -> Vec<f64> { serde_json::from_value(value.clone()).unwrap() };
+    let (at, columns) = (numbers(&path["along"]["values"]), &path["along"]["quantities"]);
+    let (force, slip) = (numbers(&columns[0]["values"]), numbers(&columns[1]["values"]));
+    assert!((4..=12).contains(&at.len()) && at.is_sorted_by(|a, b| a > b), "{at:?}");
+    for ((f, force), slip) in at.iter().zip(force).zip(slip) {
+        assert!(
+            (force + f.min(0.2)).abs() < 1e-12 && (slip - 0.006 * (0.2 - f).max(0.0)).abs() < 1e-14,
+            "{f} {force} {slip}"
+        );
     }
 }

@@ -46,7 +46,7 @@ impl Session {
         let name = friction.to_owned();
         if self.now.scenario.uses.place(&name, Region::Geometry).is_some() {
             return Err(CommandError::Refused(format!(
-                "{name} stands in the geometry or stiffness as well: `critical` varies friction alone"
+                "{name} stands in the geometry or stiffness: `critical` varies a friction that stands nowhere else"
             )));
         }
         let found = self.ask(io, move |prepared, _, watch| prepared.critical_friction(&values, &name, rules, watch))?;
