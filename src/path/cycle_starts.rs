@@ -19,7 +19,7 @@ use super::start::PathError;
 use super::static_shakedown::{SECONDS, Static, units};
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
-use crate::contact::system::ContactPair;
+use crate::contact::system::{ContactPair, ContactSystem};
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 use crate::solve::Case;
 use crate::solve::problem::contact_problem;
@@ -43,12 +43,15 @@ pub struct StartResult {
     pub slips: Vec<PairSlip>,
     /// What it comes to.
     pub kind: Kind,
-    /// Cycles until it repeats.
+    /// Cycles until it repeats; 0 where the history breaks down.
     pub cycles: usize,
-    /// Work lost in the last one.
-    pub dissipated: f64,
-    /// The largest way that it leaves behind; 0 where it does not ratchet.
-    pub net: f64,
+    /// Work lost in the last one; `None` where the history breaks down.
+    pub dissipated: Option<f64>,
+    /// The largest way that it leaves behind; 0 where it does not ratchet, `None` where the history breaks down.
+    pub net: Option<f64>,
+    /// Where the history breaks down: why.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
 }
 
 /// The same load cycle after different starts.
@@ -69,22 +72,23 @@ pub struct Starts {
 impl Starts {
     /// What they show together, in a sentence.
     pub fn sentence(&self) -> String {
-        let lost = || self.starts.iter().map(|start| start.dissipated);
         let count = self.starts.len();
-        if !self.decides && self.starts.iter().all(|start| start.kind == Kind::ShakesDown) {
-            return format!(
-                "after all {count} starts it shakes down, whatever slips are left behind; starts between them were not followed"
-            );
+        let decided: Vec<&StartResult> = self.starts.iter().filter(|start| start.is_decided()).collect();
+        let which = match count - decided.len() {
+            0 => format!("all {count} starts"),
+            _ if decided.is_empty() => return format!("undecided after each of {count} starts"),
+            _ => format!("those of {count} starts that are decided, {},", decided.len()),
+        };
+        let rest = "starts between them were not followed";
+        if !self.decides && decided.iter().all(|start| start.kind == Kind::ShakesDown) {
+            return format!("after {which} it shakes down, whatever slips are left behind; {rest}");
         }
         if !self.decides {
-            return format!("all {count} starts come to the same cycle; starts between them were not followed");
+            return format!("{which} come to the same cycle; {rest}");
         }
+        let lost = || decided.iter().filter_map(|start| start.dissipated);
         let (least, most) = (lost().fold(f64::INFINITY, f64::min), lost().fold(0.0, f64::max));
-        format!(
-            "the start decides: after {count} starts a cycle dissipates from {} to {}; starts between them were not followed",
-            short(least),
-            short(most)
-        )
+        format!("the start decides: after {which} a cycle dissipates from {} to {}; {rest}", short(least), short(most))
     }
 }
 
@@ -115,18 +119,14 @@ pub fn from_all(case: Case<'_>, name: &str, ends: [f64; 2], most: usize) -> Resu
     let every_start = zero.every_start;
     for (index, (label, slips)) in begins.iter().enumerate() {
         case.watch.progress(&format!("start {label}"), index as f64 / begins.len() as f64);
-        let found = followed(case, name, ends, most, &Begin::Slips(slips.clone()))?;
-        starts.push(StartResult::of(label.clone(), &found));
+        starts.push(match followed(case, name, ends, most, &Begin::Slips(slips.clone())) {
+            Ok(found) => StartResult::of(label.clone(), &found),
+            // One start of which nothing is known says nothing of the others.
+            Err(error @ PathError::Breakdown { .. }) => StartResult::broken(label.clone(), system, slips, &error),
+            Err(error) => return Err(error),
+        });
     }
-    let largest = |of: fn(&StartResult) -> f64| starts.iter().map(of).fold(0.0, f64::max);
-    let (lost, net) = (largest(|start| start.dissipated), largest(|start| start.net));
-    let same = if system.is_in_space() { SAME_IN_SPACE } else { SAME };
-    let differs = |start: &StartResult| {
-        start.kind != starts[0].kind
-            || (start.dissipated - starts[0].dissipated).abs() > same * lost
-            || (start.net - starts[0].net).abs() > same * net
-    };
-    let decides = starts.iter().any(differs);
+    let decides = differ(&starts, if system.is_in_space() { SAME_IN_SPACE } else { SAME });
     Ok(Starts { name: name.to_owned(), ends, starts, decides, every_start })
 }
 
@@ -140,12 +140,46 @@ impl StartResult {
             kind: found.kind,
             cycles: found.turns.len(),
             // Where it shakes down what is left is rounding.
-            dissipated: last
-                .filter(|_| found.kind != Kind::ShakesDown)
-                .map_or(0.0, |turn| turn.dissipated.iter().sum()),
-            net: last.filter(|_| found.kind == Kind::Ratchets).map_or(0.0, net),
+            dissipated: Some(
+                last.filter(|_| found.kind != Kind::ShakesDown).map_or(0.0, |turn| turn.dissipated.iter().sum()),
+            ),
+            net: Some(last.filter(|_| found.kind == Kind::Ratchets).map_or(0.0, net)),
+            why: None,
         }
     }
+
+    fn broken(start: String, system: &ContactSystem, slips: &[[f64; 2]], error: &PathError) -> StartResult {
+        let slip = |(pair, &[first, second]): (&ContactPair, &[f64; 2])| match pair.tangential.len() {
+            2 => PairSlip { pair: pair.id.clone(), slip: first.hypot(second), z_t: Some([first, second]) },
+            _ => PairSlip { pair: pair.id.clone(), slip: first, z_t: None },
+        };
+        StartResult {
+            start,
+            slips: system.pairs.iter().zip(slips).map(slip).collect(),
+            kind: Kind::Undecided,
+            cycles: 0,
+            dissipated: None,
+            net: None,
+            why: Some(error.to_string()),
+        }
+    }
+
+    fn is_decided(&self) -> bool {
+        self.kind != Kind::Undecided
+    }
+}
+
+/// Whether those that are decided come to different cycles; numbers are the same within this share of the largest.
+fn differ(starts: &[StartResult], same: f64) -> bool {
+    let decided = || starts.iter().filter(|start| start.is_decided());
+    let numbers = |start: &StartResult| [start.dissipated, start.net].map(Option::unwrap_or_default);
+    let largest = |which: usize| decided().map(|start| numbers(start)[which]).fold(0.0, f64::max);
+    let tolerance = [0, 1].map(|which| same * largest(which));
+    let Some(first) = decided().next() else { return false };
+    decided().any(|start| {
+        let apart = |which: usize| (numbers(start)[which] - numbers(first)[which]).abs();
+        start.kind != first.kind || (0..2).any(|which| apart(which) > tolerance[which])
+    })
 }
 
 fn close(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
@@ -237,4 +271,37 @@ fn extreme_slips(problem: &ContactProblem, open: &[bool], case: Case<'_>) -> Res
         }
     }
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn result(kind: Kind, dissipated: Option<f64>) -> StartResult {
+        let (start, slips, why) = (String::new(), Vec::new(), dissipated.is_none().then(|| "no rates".to_owned()));
+        StartResult { start, slips, kind, cycles: 1, dissipated, net: dissipated.map(|_| 0.0), why }
+    }
+
+    #[test]
+    fn a_start_of_which_nothing_is_known_decides_nothing() {
+        let broken = || result(Kind::Undecided, None);
+        let slides = |lost: f64| result(Kind::Alternates, Some(lost));
+        let said = |starts: Vec<StartResult>| {
+            let decides = differ(&starts, SAME);
+            let name = "L".to_owned();
+            (decides, Starts { name, ends: [0.0, 1.0], starts, decides, every_start: Static::Nothing }.sentence())
+        };
+        let (decides, sentence) = said(vec![slides(0.5), broken(), slides(0.5)]);
+        assert!(
+            !decides && sentence.starts_with("those of 3 starts that are decided, 2, come to the same"),
+            "{sentence}"
+        );
+        let (decides, sentence) = said(vec![slides(0.5), broken(), slides(0.7)]);
+        assert!(
+            decides && sentence.contains("those of 3 starts that are decided, 2, a cycle dissipates from 0.5"),
+            "{sentence}"
+        );
+        let (decides, sentence) = said(vec![result(Kind::Undecided, Some(0.1)), broken()]);
+        assert!(!decides && sentence == "undecided after each of 2 starts", "{sentence}");
+    }
 }

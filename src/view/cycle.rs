@@ -198,11 +198,15 @@ pub fn write_starts(
             Cell::from(start.start.clone()),
             Cell::from(word(start.kind).to_owned()),
             Cell::from(start.cycles.to_string()),
-            Cell::number(start.dissipated),
-            Cell::number(start.net),
+            Cell::maybe(start.dissipated),
+            Cell::maybe(start.net),
         ]));
     }
-    table.write(out, style)
+    table.write(out, style)?;
+    for (start, why) in found.starts.iter().filter_map(|start| start.why.as_ref().map(|why| (start, why))) {
+        style.paragraph(out, Role::Muted, &format!("{}: {why}", start.start))?;
+    }
+    Ok(())
 }
 
 /// The largest amplitude that shakes down, between two values.
