@@ -40,12 +40,14 @@ pub enum AttemptEngine {
     Bimatrix,
     /// One z after another of a triangular M.
     Substitution,
+    /// Convex steps down a quadratic program that is not convex, each solved by Lemke's algorithm.
+    Descent,
 }
 
 impl AttemptEngine {
     /// Whether what it finds comes without pivots of the problem itself.
     pub fn is_without_pivots(self) -> bool {
-        matches!(self, AttemptEngine::Enumeration | AttemptEngine::Bimatrix | AttemptEngine::Substitution)
+        !matches!(self, AttemptEngine::Lemke(_) | AttemptEngine::LoadPath)
     }
 }
 
@@ -144,6 +146,7 @@ impl fmt::Display for AttemptEngine {
             AttemptEngine::Enumeration => f.write_str("enumeration"),
             AttemptEngine::LoadPath => f.write_str("load-path"),
             AttemptEngine::Bimatrix => f.write_str("bimatrix"),
+            AttemptEngine::Descent => f.write_str("descent"),
             AttemptEngine::Substitution => f.write_str("substitution"),
         }
     }

@@ -22,6 +22,7 @@ pub mod compare;
 mod cone;
 pub mod counted;
 mod critical;
+mod descent;
 pub mod engines;
 pub mod error;
 pub mod exact;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::bimatrix::equilibrium;
+use super::descent::descent;
 use super::engines::{EXACT_ROWS, PIVOT_LIMIT, covered, run_exact_plain, run_scheme_within, run_tableau};
 use super::error::SolveError;
 use super::finish::{empty_answer, fail_check};
@@ -44,6 +45,9 @@ const SPECIAL: [(AttemptEngine, Special, &str); 2] = [
         "this is a bimatrix game; stated with the players' values as unknowns Lemke's algorithm finds an equilibrium",
     ),
 ];
+/// What is said of an answer by descent.
+const DESCENT: &str = "these are the first-order conditions of a quadratic program that is not convex: steps down it, each convex and \
+                       solved by Lemke's algorithm, end here; another answer may lie lower";
 /// Rows up to which all bases are tried before anything else.
 const FEW_ROWS: usize = 9;
 /// A patient search of all bases ends after this time.
@@ -254,6 +258,12 @@ fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn
     let proved = |again: &mut Solved| prove_ray(again, problem, found.as_ref(), watch);
     if let Some(solved) = ladder.climb(&rungs, budget, watch, &attempt, &proved)? {
         return Ok(solved);
+    }
+    if let Some(z) = descent(&problem.lcp, watch)? {
+        let found = plain_answer(&problem.lcp, &z, AttemptRules::from(own).by(AttemptEngine::Descent));
+        if let Some(answer) = ladder.first_answer(std::iter::once(Ok(found)), Some(DESCENT.to_owned()))? {
+            return Ok(answer);
+        }
     }
     by_all_bases(problem, ladder, found, own, watch)
 }

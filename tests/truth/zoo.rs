@@ -321,6 +321,42 @@ fn a_path_of_exponential_length_is_left_for_another_covering() {
     assert!(z.iter().enumerate().all(|(i, z)| *z == f64::from(u8::from(i == 0))), "{z:?}");
 }
 
+/// Quadratic programs that are not convex, over 0 ≤ x, A x ≤ b, x ≤ u, rows in any order: the least of a continuous function over a
+/// bounded set fulfils the first-order conditions, so that every one has an answer, judged here from M and q alone.
+#[test]
+fn quadratic_programs_that_are_not_convex_are_answered() {
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let mut by_descent = 0;
+    for case in 0..40 {
+        let (k, constraints) = (random.random_range(4..16_usize), random.random_range(0..4_usize));
+        let n = 2 * k + constraints;
+        let mut m = vec![vec![0.0; n]; n];
+        for i in 0..k {
+            for j in 0..=i {
+                (m[i][j], m[j][i]) = [f64::from(random.random_range(-9..10)); 2].into();
+            }
+            (m[i][k + i], m[k + i][i]) = (1.0, -1.0);
+            for row in 2 * k..n {
+                let entry = f64::from(random.random_range(-3..4));
+                (m[i][row], m[row][i]) = (entry, -entry);
+            }
+        }
+        let own = |i: usize, random: &mut ChaCha8Rng| {
+            f64::from(if i < k { random.random_range(-9..10) } else { random.random_range(1..4) })
+        };
+        let q: Vec<f64> = (0..n).map(|i| own(i, &mut random)).collect();
+        let order = shuffled(n, &mut random);
+        let m: Vec<Vec<f64>> = order.iter().map(|&i| order.iter().map(|&j| m[i][j]).collect()).collect();
+        let q: Vec<f64> = order.iter().map(|&i| q[i]).collect();
+        let answer = solved(&m, &q, None).answer;
+        assert!(answer.is_answer(), "case {case}: {:?}", answer.outcome);
+        by_descent += usize::from(answer.rules.engine == AttemptEngine::Descent);
+        let z = answer.solution.expect("z").z;
+        assert!(worst_violation(&m, &q, &z) <= 1e-14, "case {case}: {}", worst_violation(&m, &q, &z));
+    }
+    assert!(by_descent >= 5, "{by_descent}");
+}
+
 /// No attempt is made twice: the list has no rule twice.
 #[test]
 fn retries_never_repeat_a_run() {
