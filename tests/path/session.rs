@@ -227,8 +227,14 @@ fn a_stage_that_ends_in_a_limit_has_no_end() {
             "expect resultant bed T = -2.4 +- 1e-9",
             &format!("export stresses {}", out("stresses.csv")),
             &format!("export resultants {}", out("resultants.json")),
+            "ray",
         ],
     );
+    // All of it slides, and no forces within the bounds balance more.
+    let ray = text(&results[8]);
+    for part in ["certified", "slip + of all pairs", "where the load history ended, at 0.6 of stage 2"] {
+        assert!(ray.contains(part), "{part}: {ray}");
+    }
     let refused = text(&results[4]).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
         refused.contains("`stage 2` is its end, which was not reached: stage 2 cannot be completed: at 0.6"),

@@ -64,8 +64,19 @@ impl Session {
         self.solved.as_ref().filter(|solved| Arc::ptr_eq(solved, of)).map(|_| Arc::clone(found))
     }
 
-    /// `ray`: what it is, the work of the loads on it, its proof, and what would stop it.
+    /// `ray`: what it is, the work of the loads on it, its proof, and what would stop it; after a load history the collapse in
+    /// which it ended.
     pub(in crate::session) fn report_ray(&mut self, io: &mut Output<'_>) -> Result<(), CommandError> {
+        if let Some(place) = self.history_place() {
+            let ended = self.quantity_answer().and_then(|answer| answer.ray.as_ref());
+            let ray = ended.ok_or_else(|| CommandError::Refused(format!("no ray: the tables stand {place}")))?;
+            let report = RayReport { ray, remedies: None, remedies_complete: None };
+            io.show(&report, |out, style| {
+                view::ray::write(out, ray, &self.now.scenario.units, style)?;
+                self.write_history_place(out, style)
+            })?;
+            return Ok(());
+        }
         if self.need_answer()?.ray.is_some() {
             self.ensure_remedies(io.watch)?;
         }
