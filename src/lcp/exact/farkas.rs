@@ -42,7 +42,57 @@ pub struct Farkas {
 }
 
 /// Looks for the proof; `None`: nothing is proved, there may be a feasible z or not. `go_on` is asked now and then.
+///
+/// It looks in units of rows and columns, powers of two, in which their largest entries are near 1: where those of the file
+/// are far apart the run in f64 proposes nothing right.
 pub fn farkas(matrix: &DMatrix<f64>, q: &DVector<f64>, go_on: &mut dyn FnMut() -> bool) -> Option<Farkas> {
+    let Some(units) = Units::of(matrix, q) else { return in_own_units(matrix, q, go_on) };
+    let found = in_own_units(&units.matrix, &units.q, go_on)?;
+    Some(units.back(found))
+}
+
+/// The problem R M C, R q in other units; R and C hold powers of two, so that not a digit is lost.
+struct Units {
+    matrix: DMatrix<f64>,
+    q: DVector<f64>,
+    /// Exponents of R.
+    rows: Vec<i32>,
+}
+
+impl Units {
+    /// `None` where an entry would leave the range of f64.
+    fn of(matrix: &DMatrix<f64>, q: &DVector<f64>) -> Option<Units> {
+        let rows: Vec<Vec<f64>> = matrix.row_iter().map(|row| row.iter().copied().collect()).collect();
+        let scale = Scale::plain(&rows);
+        let exponents = |sizes: &[f64]| -> Vec<i32> {
+            sizes.iter().map(|size| if *size > 0.0 { -size.log2().round() as i32 } else { 0 }).collect()
+        };
+        let (rows, columns) = (exponents(&scale.row), exponents(&scale.column));
+        let mut is_exact = true;
+        let mut times = |value: f64, exponent: i32| {
+            let scaled = libm::ldexp(value, exponent);
+            is_exact &= libm::ldexp(scaled, -exponent) == value;
+            scaled
+        };
+        let n = q.len();
+        let matrix = DMatrix::from_fn(n, n, |i, j| times(matrix[(i, j)], rows[i] + columns[j]));
+        let q = DVector::from_fn(n, |i, _| times(q[i], rows[i]));
+        is_exact.then_some(Units { matrix, q, rows })
+    }
+
+    /// A proof in these units as one in those of the file: y = R y'.
+    fn back(&self, found: Farkas) -> Farkas {
+        let least = self.rows.iter().min().copied().unwrap_or_default();
+        let shifts = self.rows.iter().map(|exponent| exponent.abs_diff(least));
+        let weights: Vec<BigInt> = found.weights.iter().zip(shifts).map(|(weight, shift)| weight << shift).collect();
+        let multipliers: Vec<f64> =
+            found.multipliers.iter().zip(&self.rows).map(|(y, exponent)| libm::ldexp(*y, *exponent)).collect();
+        let largest = multipliers.iter().fold(0.0, |most: f64, y| most.max(*y));
+        Farkas { multipliers: multipliers.iter().map(|y| y / largest).collect(), gap: found.gap / largest, weights }
+    }
+}
+
+fn in_own_units(matrix: &DMatrix<f64>, q: &DVector<f64>, go_on: &mut dyn FnMut() -> bool) -> Option<Farkas> {
     let whole = WholeRows::of_lcp(matrix, q);
     if let Some(y) = proposed(matrix, q, go_on)
         && let Some(found) = confirm(&whole, matrix, &y, go_on)

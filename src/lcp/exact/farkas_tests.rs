@@ -58,6 +58,36 @@ fn random_programmes_made_infeasible_are_proved_and_feasible_ones_never() {
     }
 }
 
+/// BᵀB with B e = 0, so that eᵀM = 0, and eᵀq = −1; rows and columns in units up to 2⁵² apart. The proof is R⁻¹e, checked here in
+/// rationals.
+#[test]
+fn units_of_rows_and_columns_hide_no_proof() {
+    let mut random = ChaCha8Rng::seed_from_u64(43);
+    for n in [20, 60, 90] {
+        let mut b = DMatrix::from_fn(n / 3, n, |_, _| f64::from(random.random_range(-3i32..=3)));
+        b.row_iter_mut().for_each(|mut row| row[0] -= row.sum());
+        let mut q = DVector::from_fn(n, |_, _| f64::from(random.random_range(-5i32..=5)));
+        q[0] -= q.sum() + 1.0;
+        let mut unit = || f64::from(random.random_range(-26i32..=26)).exp2();
+        let rows: Vec<f64> = (0..n).map(|_| unit()).collect();
+        let columns: Vec<f64> = (0..n).map(|_| unit()).collect();
+        let product = b.tr_mul(&b);
+        let matrix = DMatrix::from_fn(n, n, |i, j| rows[i] * product[(i, j)] * columns[j]);
+        let q = DVector::from_fn(n, |i, _| rows[i] * q[i]);
+        let found = farkas(&matrix, &q, &mut || true).expect("a proof");
+        let sum = |of: &dyn Fn(usize) -> f64| -> BigRational {
+            let term = |i: usize| BigRational::from_integer(found.weights[i].clone()) * BigRational::from_f64(of(i));
+            (0..n).map(term).sum()
+        };
+        assert!(found.weights.iter().all(|weight| !weight.is_negative()), "{n}");
+        assert!((0..n).all(|j| !sum(&|i| matrix[(i, j)]).is_positive()) && sum(&|i| q[i]).is_negative(), "{n}");
+        // The multipliers are the weights, the largest 1, and the gap is theirs.
+        let gap: f64 = -(0..n).map(|i| found.multipliers[i] * q[i]).sum::<f64>();
+        assert!((gap - found.gap).abs() <= 1e-9 * found.gap, "{n}: {gap} {}", found.gap);
+        assert_eq!(found.multipliers.iter().copied().fold(0.0, f64::max), 1.0);
+    }
+}
+
 #[test]
 fn rounding_is_no_proof() {
     // x − x with entries that f64 cannot hold: 0.1 + 0.2 − 0.3 = 5.6e-17 > 0 exactly, so z is feasible for a tiny
