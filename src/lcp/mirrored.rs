@@ -94,7 +94,7 @@ impl MirroredLcp {
             let row = point.z.iter().enumerate().filter(|(_, z)| **z != 0.0);
             self.q[i].abs() + row.map(|(j, z)| (self.base[(i, j)] * z).abs()).sum::<f64>()
         };
-        as_good_as_nothing(point, self.scale.load, |i| self.covering[i], terms)
+        as_good_as_nothing(point, self.scale.load, |i| (self.q[i], self.covering[i]), terms)
     }
 
     /// n(i) and f_i of a row that is coupled to a normal force.

@@ -7,6 +7,8 @@ use crate::lcp::exact::scalar::Scalar;
 pub const NOISE: f64 = 256.0 * f64::EPSILON;
 /// Rounds of equilibration: each halves the distance of the logarithms of the factors from their limits.
 const EQUILIBRATIONS: usize = 8;
+/// A p that is more than this share of what it was when it entered is no rounding, however large z.
+const MOST_LEFT: f64 = 1e-4;
 /// p at a ray at most this multiple of the load, or of the terms of each row, is a normal end, flagged marginal.
 pub const MARGINAL: f64 = 1e-12;
 
@@ -78,24 +80,48 @@ impl<T: Scalar> Lcp<T> {
             let row = self.matrix[i].iter().zip(&point.z).filter(|(_, z)| **z != 0.0);
             self.q[i].to_f64().abs() + row.map(|(m, z)| (m.to_f64() * z).abs()).sum::<f64>()
         };
-        as_good_as_nothing(point, self.scale.load, |i| self.covering[i].to_f64(), terms)
+        as_good_as_nothing(point, self.scale.load, |i| (self.q[i].to_f64(), self.covering[i].to_f64()), terms)
     }
 }
 
 /// Whether the p that is left at the end of a run is small enough for an answer: compared with the load, where its size
 /// is known. The rows of a bare LCP may be of any size: there p is compared, in every row that has no w to spare for
-/// it, with the terms of that row.
+/// it, with the terms of that row. Where z is very large these hide any p: it is nothing only where it is little of what it
+/// was when it entered, too.
 pub(super) fn as_good_as_nothing(
     point: &Point,
     load: Option<f64>,
-    covering: impl Fn(usize) -> f64,
+    start: impl Fn(usize) -> (f64, f64),
     terms: impl Fn(usize) -> f64,
 ) -> bool {
     if let Some(load) = load {
         return point.p <= MARGINAL * load;
     }
+    let needed = |i: usize| {
+        let (q, covering) = start(i);
+        -q / covering
+    };
+    let entered = (0..point.w.len()).map(needed).fold(0.0, f64::max);
+    if point.p > MOST_LEFT * entered {
+        return false;
+    }
     (0..point.w.len()).all(|i| {
-        let share = covering(i) * point.p;
+        let share = start(i).1 * point.p;
         point.w[i] >= share || share <= MARGINAL * terms(i)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Beside z = 2e13 the terms of the row hide any p; one that has grown since it entered is no rounding.
+    #[test]
+    fn a_large_z_hides_no_p() {
+        let lcp =
+            Lcp { matrix: vec![vec![1.0]], q: vec![-24.0], covering: vec![1.0], scale: Scale::plain(&[vec![1.0]]) };
+        let is_marginal = |p: f64, z: f64| lcp.is_marginal(&Point { z: vec![z], w: vec![0.0], p });
+        assert!(!is_marginal(488.0, 2e15) && !is_marginal(1.0, 2e15));
+        assert!(is_marginal(1e-12, 24.0) && is_marginal(1e-3, 2e15));
+    }
 }

@@ -19,6 +19,7 @@ pub mod grid;
 pub mod groups;
 pub mod jet;
 pub mod joints;
+pub mod left_by_rounding;
 pub mod load;
 pub mod load_case;
 pub mod locate;

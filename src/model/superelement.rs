@@ -4,6 +4,7 @@ use nalgebra::DMatrix;
 
 use super::dimension::Dimension;
 use super::groups::Groups;
+use super::left_by_rounding::is_left_by_rounding;
 use super::node::{Component, Node};
 use super::vector::way;
 
@@ -59,21 +60,55 @@ impl Superelement {
         dofs: Vec<(usize, Component)>,
         entries: Vec<(usize, usize, f64)>,
     ) -> (Superelement, Vec<String>) {
-        let mut element = Superelement { file: file.to_owned(), dofs, entries, parts: Vec::new() };
+        let element = Superelement { file: file.to_owned(), dofs, entries, parts: Vec::new() };
+        let cleared = element.without_rounding();
+        let (as_given, notes) = element.with_parts(dimension, nodes);
+        // Each motion that only rounding resists is noted.
+        if notes.is_empty() || cleared.entries.len() == as_given.entries.len() {
+            return (as_given, notes);
+        }
+        let left = as_given.entries.len() - cleared.entries.len();
+        let (cleared, mut others) = cleared.with_parts(dimension, nodes);
+        if cleared.free_count(dimension) <= as_given.free_count(dimension) {
+            return (as_given, notes);
+        }
+        others.push(format!(
+            "{left} entries of the stiffness are what rounding leaves of zero (below 1e-12 of the roots of their diagonals): taken as 0, \
+             they do not hinder rigid motions"
+        ));
+        (cleared, others)
+    }
+
+    /// How many rigid motions of its parts cost nothing.
+    fn free_count(&self, dimension: Dimension) -> usize {
+        self.parts.iter().map(|part| dimension.components().len() - part.resisted.len()).sum()
+    }
+
+    /// Without the entries that may be [rounding](is_left_by_rounding).
+    fn without_rounding(&self) -> Superelement {
+        let mut roots = vec![0.0; self.dofs.len()];
+        let diagonal = self.entries.iter().filter(|(i, j, _)| i == j);
+        diagonal.for_each(|&(i, _, value)| roots[i] = value.max(0.0).sqrt());
+        let mut cleared = self.clone();
+        cleared.entries.retain(|&(i, j, value)| i == j || !is_left_by_rounding(value, [roots[i], roots[j]]));
+        cleared
+    }
+
+    fn with_parts(mut self, dimension: Dimension, nodes: &[Node]) -> (Superelement, Vec<String>) {
         let mut notes = Vec::new();
-        let part_of = element.part_of_nodes(nodes.len());
+        let part_of = self.part_of_nodes(nodes.len());
         let count = part_of.iter().flatten().max().map_or(0, |last| last + 1);
         let mut rows: Vec<Vec<usize>> = vec![Vec::new(); count];
-        for (row, (node, _)) in element.dofs.iter().enumerate() {
+        for (row, (node, _)) in self.dofs.iter().enumerate() {
             if let Some(part) = part_of[*node] {
                 rows[part].push(row);
             }
         }
         for rows in &rows {
-            let part = element.part(dimension, nodes, rows, &mut notes);
-            element.parts.push(part);
+            let part = self.part(dimension, nodes, rows, &mut notes);
+            self.parts.push(part);
         }
-        (element, notes)
+        (self, notes)
     }
 
     /// The part of every node that has a row, counted from 0.

@@ -36,8 +36,7 @@ impl Prepared {
         // Only figures of the size of rounding are worth the proof; beside exact data it may have hidden the loads.
         let has_exact_data = self.system().is_some_and(|system| system.has_exact_data());
         let check = &solved.answer.check;
-        let excusable =
-            check.is_within(EXCUSABLE) || (has_exact_data && check.with_nothing_hidden().is_within(EXCUSABLE));
+        let excusable = check.is_within(EXCUSABLE) || (has_exact_data && check.of_proved_state().is_within(EXCUSABLE));
         if self.system().is_none_or(|system| system.turning_pairs() > EXACT_PAIRS) || !excusable {
             return;
         }

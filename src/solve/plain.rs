@@ -14,8 +14,9 @@ use super::settle::{ray_holds, settled};
 use super::state::{LookedAt, RunData, Solved};
 use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules, PlainCovering};
 use crate::answer::check::TOLERANCE;
-use crate::answer::check_plain::{ROW_ROUNDING, check_plain};
-use crate::answer::record::{OutcomeKind, PlainSolution, Ray, Size, Verdict};
+use crate::answer::check_plain::{ROW_ROUNDING, check_plain, row};
+use crate::answer::record::{Answer, OutcomeKind, PlainSolution, Ray, Size, Verdict};
+use crate::contact::sum::HIDDEN;
 use crate::explain::plain_ray::PlainRay;
 use crate::explain::sentence;
 use crate::lcp::exact::dyadic::nearest;
@@ -48,6 +49,9 @@ const SPECIAL: [(AttemptEngine, Special, &str); 2] = [
 /// What is said of an answer by descent.
 const DESCENT: &str = "these are the first-order conditions of a quadratic program that is not convex: steps down it, each convex and \
                        solved by Lemke's algorithm, end here; another answer may lie lower";
+/// What is said of an answer so far away that rounding hides q there.
+const FAR: &str = "z is so large that the rounding of M z hides q: an answer of the numbers as they are written, which may be none if \
+                   they were rounded, as a motion that nothing resists makes it";
 /// Rows up to which all bases are tried before anything else.
 const FEW_ROWS: usize = 9;
 /// A patient search of all bases ends after this time.
@@ -160,7 +164,9 @@ pub(super) fn attempt_plain(
         // A marginal answer holds only up to the p that was left.
         let tolerance = if marginal { TOLERANCE } else { ROW_ROUNDING };
         answer.check = check_plain(&lcp, &run.point.z, tolerance);
-        if !answer.check.passed {
+        if answer.check.passed {
+            judge_rounding(&mut answer, &lcp);
+        } else {
             fail_check(&mut answer);
         }
     }
@@ -323,7 +329,9 @@ pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], rules: AttemptRule
     let mut answer = empty_answer(&run, 1.0, rules, size);
     answer.check = check;
     answer.solution = Some(PlainSolution { z: run.point.z, w: run.point.w });
-    if !answer.check.passed {
+    if answer.check.passed {
+        judge_rounding(&mut answer, lcp);
+    } else {
         answer.outcome = OutcomeKind::CheckFailed;
     }
     Solved {
@@ -336,6 +344,20 @@ pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], rules: AttemptRule
         rest: None,
         looked_at: LookedAt::default(),
         retry_note: String::new(),
+    }
+}
+
+/// Of an answer that passed: w that is rounding of its own terms is 0, and z beside which rounding hides q is told.
+fn judge_rounding(answer: &mut Answer, lcp: &MirroredLcp) {
+    let Some(PlainSolution { z, w }) = &mut answer.solution else { return };
+    let mut largest = 0.0;
+    for (i, w) in w.iter_mut().enumerate() {
+        let sum = row(lcp, z, i);
+        *w = if sum.relative().abs() <= ROW_ROUNDING { 0.0 } else { sum.value() };
+        largest = f64::max(largest, sum.magnitude());
+    }
+    if ROW_ROUNDING * largest > HIDDEN * lcp.q.amax() {
+        answer.notes.push(FAR.to_owned());
     }
 }
 

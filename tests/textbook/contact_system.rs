@@ -38,6 +38,34 @@ fn a_contrast_of_stiffness_is_no_mechanism() {
     assert!(answer.notes.is_empty(), "{:?}", answer.notes);
 }
 
+/// A free bar on two feet, whose R went through a transformation and back in f64: what that left between normal and tangential
+/// joints would let the bar slide away until a foot lifts off, some 1e12 far. It holds up to f Σ W, and slides beyond.
+#[test]
+fn rounding_in_a_given_matrix_holds_no_body() {
+    let weights = [38.943678582302404, 43.61013374999261];
+    let limit = 0.3 * (weights[0] + weights[1]);
+    for share in [0.999, 1.001, 1.5, 3.0] {
+        let case = Case::json(system(json!({
+            "pairs": ["c0", "c1"], "friction": [0.3, 0.3],
+            "stiffness": [
+                [1142.6525445880848, -1.6962085584452404e-11, -1.1283326004379415e-10, -3.8994167312218257e-11],
+                [-1.6962085584452404e-11, 1131.2841904298778, -3.350073238754205e-11, 7.873610578487224e-11],
+                [-1.1283326004379415e-10, -3.350073238754205e-11, 903869.257630761, -903869.2576307612],
+                [-3.8994167312218257e-11, 7.873610578487224e-11, -903869.2576307612, 903869.2576307614]
+            ],
+            "loads": { "w": { "vector": [weights[0], weights[1], 0, 0] }, "h": { "vector": [0, 0, 0, -share * limit] } }
+        })));
+        let answer = case.solve(&[]);
+        if share < 1.0 {
+            is_answer(&answer);
+            near_all("x_n", &of_pairs(&answer, |pair| pair.x_n), &weights, 1e-9);
+        } else {
+            let ray = answer.ray.unwrap_or_else(|| panic!("{share}: {:?}", answer.outcome));
+            assert!(matches!(ray.verdict, Some(Verdict::Proved | Verdict::Certified)), "{share}: {:?}", ray.verdict);
+        }
+    }
+}
+
 #[test]
 fn what_cancels_in_condensing_is_no_load() {
     // R = v vᵀ, RF = −v: with z_t released RF_n − R_nt RF_t / R_tt = 0, in f64 some 1e-17. z_n = 0 is an answer.

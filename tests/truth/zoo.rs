@@ -359,6 +359,19 @@ fn quadratic_programs_that_are_not_convex_are_answered() {
     assert!(by_descent >= 3, "{by_descent}");
 }
 
+/// z₁ − z₂ = 1 and δ z₂ = 2 with δ = 2⁻⁵⁰: the answer (2⁵¹ + 1, 2⁵¹) is one of these numbers, but not of others that round to them,
+/// and what M z + q leaves of its terms is no w.
+#[test]
+fn an_answer_so_far_away_that_rounding_hides_q_is_told() {
+    let matrix = [vec![1.0, -1.0], vec![-1.0, 1.0 + f64::powi(2.0, -50)]];
+    let answer = solved(&matrix, &[-1.0, -1.0], None).answer;
+    assert!(answer.is_answer() && answer.notes.iter().any(|note| note.contains("hides q")), "{:?}", answer.notes);
+    let solution = answer.solution.expect("z");
+    assert_eq!((solution.z, solution.w), (vec![f64::powi(2.0, 51) + 1.0, f64::powi(2.0, 51)], vec![0.0; 2]));
+    let answer = solved(&[vec![1.0, -1.0], vec![-1.0, 1.5]], &[-1.0, -1.0], None).answer;
+    assert!(answer.is_answer() && !answer.notes.iter().any(|note| note.contains("hides q")), "{:?}", answer.notes);
+}
+
 /// No attempt is made twice: the list has no rule twice.
 #[test]
 fn retries_never_repeat_a_run() {

@@ -8,19 +8,24 @@ use nalgebra::DMatrix;
 
 use super::error::GivenError;
 use crate::contact::pivoted::DIGITS;
+use crate::model::left_by_rounding::{digits, is_left_by_rounding};
 
 /// A matrix without a longer entry than this has whole or short numbers, which are meant as they stand.
 const SHORT: usize = 9;
 /// Digits that an f64 has.
 const MOST: usize = 17;
 
+/// The matrix with zeros where its entries may be [rounding](is_left_by_rounding); `None` where none is.
+pub(super) fn without_rounding(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let roots: Vec<f64> = matrix.diagonal().iter().map(|entry| entry.max(0.0).sqrt()).collect();
+    let is_left = |i: usize, j: usize, entry: f64| i != j && is_left_by_rounding(entry, [roots[i], roots[j]]);
+    let cleared = matrix.map_with_location(|i, j, entry| if is_left(i, j, entry) { 0.0 } else { entry });
+    (cleared != *matrix).then_some(cleared)
+}
+
 /// Half a unit of the last digit of the longest entry, relative: how far each entry may be from what was printed.
 fn rounding(matrix: &DMatrix<f64>) -> f64 {
-    let digits = |entry: &f64| {
-        let shortest = format!("{entry:e}");
-        shortest.bytes().take_while(|byte| *byte != b'e').filter(u8::is_ascii_digit).count()
-    };
-    match matrix.iter().map(digits).max() {
+    match matrix.iter().map(|entry| digits(*entry)).max() {
         Some(longest) if longest > SHORT && longest < MOST => 0.5 * 10f64.powi(1 - longest as i32),
         _ => 0.0,
     }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use self::definite::judge_entries;
+use self::definite::{judge_entries, without_rounding};
 pub use self::error::GivenError;
 use self::rows::{Rows, cleaned, joint_name, joints_in_words, pairs};
 use self::singular::{repeated_in_space, singular_compliance};
@@ -76,6 +76,20 @@ fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<(PivotedCholes
     Ok((factor, null))
 }
 
+/// A stiffness matrix with its null space. Where it is singular, or nearly so, entries that may be rounding are taken as that
+/// unless the motions of the whole are then fewer.
+fn with_null_space(matrix: DMatrix<f64>) -> Result<(DMatrix<f64>, PivotedCholesky, NullSpace), GivenError> {
+    let (whole, null) = null_space("stiffness", &matrix)?;
+    let is_regular = null.exact.is_empty() && null.near.is_empty();
+    if !is_regular && let Some(cleared) = without_rounding(&matrix) {
+        let (factor, motions) = null_space("stiffness", &cleared)?;
+        if motions.exact.len() >= null.exact.len() && motions.near.len() <= null.near.len() {
+            return Ok((cleared, factor, motions));
+        }
+    }
+    Ok((matrix, whole, null))
+}
+
 fn from_stiffness(
     given: &GivenContactSystem,
     matrix: DMatrix<f64>,
@@ -91,7 +105,7 @@ fn from_stiffness(
             (motions, data)
         }
         None => {
-            let (whole, null) = null_space("stiffness", &matrix)?;
+            let (matrix, whole, null) = with_null_space(matrix)?;
             remarks.extend(null.near.iter().map(|z| nearly_singular(given, z, &whole.scale)));
             if null.least < -DIGITS * matrix.nrows() as f64 {
                 remarks.push(format!(
