@@ -69,7 +69,9 @@ pub fn idle_spins(structure: &Structure, parts: &Parts) -> Vec<IdleSpin> {
     }
     let mut idle = Vec::new();
     for (unknowns, rows) in std::iter::zip(&unknowns, &of_group) {
-        let Some(NullSpace { basis, sensitivity }) = null_space(rows, unknowns.len(), NULL) else { continue };
+        let Some(NullSpace { basis, sensitivity }) = null_space(rows, unknowns.len(), NULL, usize::MAX) else {
+            continue;
+        };
         let mut vectors: Vec<Vec<f64>> = basis.column_iter().map(|vector| vector.iter().copied().collect()).collect();
         while let Some(vector) = (!vectors.is_empty()).then(|| vectors.remove(0)) {
             let Some(mut spin) = spins.told(unknowns, &vector) else { continue };

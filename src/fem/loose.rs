@@ -4,8 +4,9 @@
 //! part) that open no pin and no tie, move no support and stretch no spring are the null space of a small matrix;
 //! testing motions one by one would miss a rotation about a pin or a tie.
 //!
-//! In a cluster of very many parts (a large truss) elements joined by common nodes are taken as one part; its
-//! internal mechanisms, if it has any, are found from the eigenvalues of R instead (see `main_system`).
+//! Of a cluster of very many parts the null space comes from an elimination, and every motion is put to the test. Where
+//! that took too long or lost too many digits, elements joined by common nodes are taken as one part; its internal
+//! mechanisms, if it has any, are found from the eigenvalues of R instead (see `main_system`), known to fewer digits.
 
 use std::collections::{HashMap, HashSet};
 
@@ -32,6 +33,9 @@ const CONTRAST: f64 = 1e6;
 /// Two elements that share a side of at least this share of the whole are held by it against turning, in the same
 /// digits: its square times the stiffness.
 const SHORT: f64 = 1e-6;
+
+/// Most additions of an elimination that may be in vain, some tenths of a second. A rope of n pieces takes n².
+pub const EFFORT: usize = 2_000_000;
 
 /// A motion of the whole structure, its displacements per node in the order of [`Component::ALL`], largest translation
 /// (or rotation × size) about 1.
@@ -80,19 +84,17 @@ pub fn shortest_side(structure: &Structure) -> f64 {
     structure.elements.iter().map(|element| of_element(&element.nodes)).fold(f64::INFINITY, f64::min)
 }
 
-/// The motions from the parts.
-pub fn loose_motions(structure: &Structure, dofs: &Dofs) -> LooseMotions {
+/// The motions from the parts, one by one where that takes no more than `effort` additions.
+pub fn loose_motions(structure: &Structure, dofs: &Dofs, effort: usize) -> LooseMotions {
     let parts = Parts::new(structure);
     let clusters = parts.clusters(structure);
     let spins: Vec<Spin> = idle_spins(structure, &parts).into_iter().map(|spin| (spin.part, spin.axis)).collect();
     let (mut motions, mut complete) = (Vec::new(), true);
     for cluster in clusters {
-        let null_space = if structure.dimension.components().len() * cluster.parts.len() <= DENSE {
-            cluster.null_space(structure, dofs, &parts, &spins)
-        } else {
-            None
-        };
-        match null_space {
+        let unknowns = Unknowns::of(&cluster, structure, dofs, &parts);
+        // An elimination cannot be sure of the rank.
+        complete &= unknowns.count <= DENSE;
+        match unknowns.null_space(&cluster, &spins, effort) {
             Some(space) => motions.extend(space),
             None => {
                 complete = false;
@@ -100,7 +102,8 @@ pub fn loose_motions(structure: &Structure, dofs: &Dofs) -> LooseMotions {
                 // What turns inside a group is not looked at, so neither is the spin of one on a line.
                 let lines = merged.lines(structure).into_iter().zip(0..);
                 let spins: Vec<Spin> = lines.filter_map(|(axis, part)| Some((part, axis?))).collect();
-                motions.extend(cluster.null_space(structure, dofs, &merged, &spins).unwrap_or_default());
+                let unknowns = Unknowns::of(&cluster, structure, dofs, &merged);
+                motions.extend(unknowns.null_space(&cluster, &spins, usize::MAX).unwrap_or_default());
             }
         }
     }
@@ -192,31 +195,6 @@ impl Cluster {
         let merged = Parts { at_node, turning, turns, of_element, of_superelement };
         (merged, Cluster { parts, ..self })
     }
-
-    /// Motions of the cluster; `None` if the decomposition did not converge.
-    fn null_space(&self, structure: &Structure, dofs: &Dofs, parts: &Parts, spins: &[Spin]) -> Option<Vec<Motion>> {
-        let unknowns = Unknowns::of(self, structure, dofs, parts);
-        let mut rows: Vec<Terms> = [unknowns.pins(self), unknowns.given_resistance(), unknowns.holders(self)].concat();
-        if structure.dimension == Dimension::Space {
-            rows.extend(unknowns.torsions(self));
-            let own = spins.iter().filter(|(part, _)| unknowns.of_part.contains_key(part));
-            rows.extend(own.map(|&(part, axis)| unknowns.spin(part, axis).collect::<Terms>()));
-        }
-        let largest = self.nodes.iter().flat_map(|&n| structure.nodes[n].position).fold(0.0_f64, |m, x| m.max(x.abs()));
-        let basis = null_space(&rows, unknowns.count, NULL * (1.0 + largest / unknowns.size))?.basis;
-        let motions = basis.column_iter().map(|q| {
-            let mut u = vec![[0.0; 6]; structure.nodes.len()];
-            for &node in &self.nodes {
-                for &component in structure.dimension.components() {
-                    let terms = unknowns.of_node(node, component).unwrap_or_default();
-                    let moved = terms.into_iter().map(|(i, a)| a * q[i]).sum::<f64>();
-                    u[node][component as usize] = if component.is_rotation() { moved / unknowns.size } else { moved };
-                }
-            }
-            Motion { u, internal: false }
-        });
-        Some(motions.collect())
-    }
 }
 
 fn negative(terms: Terms) -> impl Iterator<Item = (usize, f64)> {
@@ -257,6 +235,36 @@ impl<'a> Unknowns<'a> {
             of_part.insert(part, unknowns);
         }
         Unknowns { structure, dofs, parts, of_part, count, centre, size }
+    }
+
+    /// Motions of the cluster; `None` where an elimination took more than `effort` additions or lost too many digits.
+    fn null_space(&self, cluster: &Cluster, spins: &[Spin], effort: usize) -> Option<Vec<Motion>> {
+        let structure = self.structure;
+        let mut rows: Vec<Terms> = [self.pins(cluster), self.given_resistance(), self.holders(cluster)].concat();
+        if structure.dimension == Dimension::Space {
+            rows.extend(self.torsions(cluster));
+            let own = spins.iter().filter(|(part, _)| self.of_part.contains_key(part));
+            rows.extend(own.map(|&(part, axis)| self.spin(part, axis).collect::<Terms>()));
+        }
+        let places = cluster.nodes.iter().flat_map(|&n| structure.nodes[n].position);
+        let largest = places.fold(0.0_f64, |m, x| m.max(x.abs()));
+        let null = NULL * (1.0 + largest / self.size);
+        let space = null_space(&rows, self.count, null, effort)?;
+        if self.count > DENSE && !space.is_of(&rows, null) {
+            return None;
+        }
+        let motions = space.basis.column_iter().map(|q| {
+            let mut u = vec![[0.0; 6]; structure.nodes.len()];
+            for &node in &cluster.nodes {
+                for &component in structure.dimension.components() {
+                    let terms = self.of_node(node, component).unwrap_or_default();
+                    let moved = terms.into_iter().map(|(i, a)| a * q[i]).sum::<f64>();
+                    u[node][component as usize] = if component.is_rotation() { moved / self.size } else { moved };
+                }
+            }
+            Motion { u, internal: false }
+        });
+        Some(motions.collect())
     }
 
     /// Displacement of a node as it moves with a part; rotations are multiplied by `size`.

@@ -21,7 +21,7 @@ use super::factor::Factor;
 use super::kernel::{self, RigidKernel};
 use super::links::Links;
 use super::loads::{load_vectors, settlements};
-use super::loose::{Motion, loose_motions};
+use super::loose::{EFFORT, Motion, loose_motions};
 use super::order::Places;
 use super::outline::{Outline, refuse_torques};
 use super::refinement::{Refinement, Verdict};
@@ -112,6 +112,19 @@ impl MainSystem {
     /// where nothing turns, too large,
     /// interrupted: see [`MainSystemError`].
     pub fn new(structure: &Structure, all_joints: &[Joint], watch: &dyn Watch) -> Result<MainSystem, MainSystemError> {
+        MainSystem::with_effort(structure, all_joints, watch, EFFORT)
+    }
+
+    /// With a bound of its own for the additions that look for motions among the parts, before R is asked.
+    ///
+    /// # Errors
+    /// As [`MainSystem::new`].
+    pub(super) fn with_effort(
+        structure: &Structure,
+        all_joints: &[Joint],
+        watch: &dyn Watch,
+        effort: usize,
+    ) -> Result<MainSystem, MainSystemError> {
         let clock = Instant::now();
         watch.progress(&format!("assembling {} elements", structure.elements.len()), 0.0);
         let Outline { dofs, elimination, joints, independent, repeated, f, settled } =
@@ -120,7 +133,7 @@ impl MainSystem {
         let (k, loose) = both(
             dofs.count(),
             || assemble_seen(structure, &dofs, &|| watch.stop(), |k| stiffnesses.take(k)),
-            || loose_motions(structure, &dofs),
+            || loose_motions(structure, &dofs, effort),
         );
         let k = k?;
         let no_others = loose.are_all(structure, &stiffnesses);

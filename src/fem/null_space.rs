@@ -23,14 +23,33 @@ pub struct NullSpace {
     pub sensitivity: f64,
 }
 
+impl NullSpace {
+    /// Whether its vectors are null vectors of the rows but for the share `null` of the largest terms that there can be.
+    pub fn is_of(&self, rows: &[Terms], null: f64) -> bool {
+        self.basis.column_iter().all(|vector| {
+            let most = null * vector.amax();
+            rows.iter().all(|row| {
+                let (sum, size) = row
+                    .iter()
+                    .fold((0.0, 0.0), |(sum, size), &(unknown, a)| (sum + a * vector[unknown], size + a.abs()));
+                f64::abs(sum) <= most * size
+            })
+        })
+    }
+}
+
 /// The null space. Singular values below the share `null` of the largest count as zero, and in an elimination what is
-/// below that share of the terms it sums. `None` if the decomposition does not converge.
-pub fn null_space(rows: &[Terms], columns: usize, null: f64) -> Option<NullSpace> {
+/// below that share of the terms it sums. `None` if the decomposition does not converge, or an elimination took more than
+/// `most` additions.
+pub fn null_space(rows: &[Terms], columns: usize, null: f64, most: usize) -> Option<NullSpace> {
     if rows.is_empty() {
         return Some(NullSpace { basis: DMatrix::identity(columns, columns), sensitivity: 0.0 });
     }
-    let (basis, least) =
-        if columns <= DENSE { by_singular_values(rows, columns, null)? } else { by_elimination(rows, columns, null) };
+    let (basis, least) = if columns <= DENSE {
+        by_singular_values(rows, columns, null)?
+    } else {
+        by_elimination(rows, columns, null, most)?
+    };
     let size = rows.iter().flatten().map(|(_, a)| a * a).sum::<f64>().sqrt();
     let sensitivity = if least > 0.0 { size / least } else { 0.0 };
     Some(NullSpace { basis: echelon(basis, columns), sensitivity })
@@ -66,8 +85,9 @@ fn add(sums: &mut Sums, unknown: usize, value: f64, magnitude: f64) {
 }
 
 /// Gaussian elimination row by row, with the largest entry of a row as its pivot.
-fn by_elimination(rows: &[Terms], columns: usize, null: f64) -> Found {
+fn by_elimination(rows: &[Terms], columns: usize, null: f64, most: usize) -> Option<Found> {
     let mut least = f64::INFINITY;
+    let mut left = most;
     // Unknown = −Σ a · others, in the order in which they were found: none holds the unknown of an older one.
     let mut pivots: Vec<(usize, Terms)> = Vec::new();
     let mut pivot_of = vec![usize::MAX; columns];
@@ -76,6 +96,7 @@ fn by_elimination(rows: &[Terms], columns: usize, null: f64) -> Found {
         row.iter().for_each(|&(unknown, a)| add(&mut sums, unknown, a, a.abs()));
         let oldest = |sums: &Sums| sums.keys().map(|&unknown| pivot_of[unknown]).min().filter(|at| *at != usize::MAX);
         while let Some((unknown, terms)) = oldest(&sums).map(|at| &pivots[at]) {
+            left = left.checked_sub(terms.len())?;
             let (value, magnitude) = sums.remove(unknown).unwrap_or_default();
             if value.abs() > null * magnitude {
                 terms.iter().for_each(|&(other, a)| add(&mut sums, other, -value * a, magnitude * a.abs()));
@@ -98,7 +119,7 @@ fn by_elimination(rows: &[Terms], columns: usize, null: f64) -> Found {
         }
         vector
     });
-    (basis.collect(), if least.is_finite() { least } else { 0.0 })
+    Some((basis.collect(), if least.is_finite() { least } else { 0.0 }))
 }
 
 fn echelon(mut basis: Vec<DVector<f64>>, columns: usize) -> DMatrix<f64> {
@@ -117,8 +138,8 @@ fn echelon(mut basis: Vec<DVector<f64>>, columns: usize) -> DMatrix<f64> {
         basis[done] /= pivot;
         let leading = basis[done].clone();
         for (i, vector) in basis.iter_mut().enumerate() {
-            if i != done {
-                let factor = vector[column];
+            let factor = vector[column];
+            if i != done && factor != 0.0 {
                 vector.axpy(-factor, &leading, 1.0);
             }
         }
@@ -164,8 +185,8 @@ mod tests {
             let columns = 3 * bodies;
             let null = 1024.0 * f64::EPSILON;
             let [one, other] =
-                [by_singular_values(&rows, columns, null).unwrap(), by_elimination(&rows, columns, null)]
-                    .map(|(basis, _)| echelon(basis, columns));
+                [by_singular_values(&rows, columns, null), by_elimination(&rows, columns, null, usize::MAX)]
+                    .map(|found| echelon(found.unwrap().0, columns));
             // Two equations a pin; those round the ring leave its rotations.
             assert_eq!((one.ncols(), other.ncols()), (bodies - supported, bodies - supported));
             assert!((&one - &other).amax() < 1e-9, "{}", (&one - &other).amax());
@@ -185,6 +206,6 @@ mod tests {
         for other in (1..bodies).map(|body| 3 * body) {
             rows.extend((0..3).map(|c| vec![(other + c, 1.0), (other + c - 3, -1.0)]));
         }
-        assert_eq!(null_space(&rows, 3 * bodies, 1024.0 * f64::EPSILON).unwrap().basis.ncols(), 0);
+        assert_eq!(null_space(&rows, 3 * bodies, 1024.0 * f64::EPSILON, usize::MAX).unwrap().basis.ncols(), 0);
     }
 }

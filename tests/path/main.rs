@@ -22,6 +22,7 @@ mod prove_in_space;
 mod random;
 mod repeated_refusals;
 mod results;
+mod rope;
 mod rules_in_space;
 mod sample;
 mod sensitivity_in_space;

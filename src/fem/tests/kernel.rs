@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use super::builder::{Model, coulomb, frictionless, point, two_plates};
 use crate::fem::MainSystem;
 use crate::fem::kernel::mutual_displacements;
+use crate::fem::loose::EFFORT;
 
 /// R Z = 0, Z orthonormal, the motions have the same span on the joints, and K agrees that they are free.
 #[track_caller]
@@ -98,8 +99,8 @@ fn hinged_halves_spread() {
     }
 }
 
-/// A fan of many trusses (beyond the number of parts that are taken one by one) with a loose quadrilateral inside:
-/// the mechanism is found from R.
+/// A truss of so many bars that its parts are looked at by an elimination, with a loose quadrilateral inside: the
+/// mechanism is found from them, and from R where they are not looked at one by one. Both span the same space.
 #[test]
 fn internal_mechanism_of_a_large_truss() {
     let mut model = Model::default();
@@ -122,11 +123,53 @@ fn internal_mechanism_of_a_large_truss() {
     for i in [0, 7, 22, bays] {
         model.pair(below[i], None, [0.0, 1.0], coulomb());
     }
+    let systems = [EFFORT, 0].map(|effort| {
+        MainSystem::with_effort(&model.0, &model.joints(), &crate::watch::Quiet, effort).expect("no mechanism unfelt")
+    });
+    for (system, from_r) in std::iter::zip(&systems, [0, 1]) {
+        assert_eq!(system.kernel().ncols(), 4);
+        let internal = system.kernel_motions().iter().filter(|m| m.internal).count();
+        assert_eq!(internal, from_r);
+        assert!((system.stiffness() * system.kernel()).amax() < 1e-15 * system.stiffness().amax());
+    }
+    let [one, other] = systems.map(|system| system.kernel() * system.kernel().transpose());
+    assert!((one - other).amax() < 1e-9);
+}
+
+/// A rope of n straight pieces between two springs: each of the 2 (n + 1) displacements of its nodes is free, but for one
+/// condition a piece and one a spring. The motions stretch neither.
+#[test]
+fn motions_of_a_rope_of_many_pieces() {
+    let pieces = 101;
+    let turn = 4.0 * std::f64::consts::PI / f64::from(pieces - 1);
+    let mut model = Model::default();
+    let nodes: Vec<usize> = (0..=pieces)
+        .map(|k| {
+            let (sin, cos) = ((f64::from(k) - 0.5) * turn).sin_cos();
+            model.node("d", cos, sin)
+        })
+        .collect();
+    for ends in nodes.windows(2) {
+        model.truss(ends[0], ends[1], 1.0);
+    }
+    let last = nodes[nodes.len() - 1];
+    [nodes[0], last].into_iter().for_each(|end| model.spring(end, [1.0, 0.0], 1e5));
+    for &node in &nodes[1..nodes.len() - 1] {
+        let [x, y, _] = model.0.nodes[node].position;
+        model.pair(node, None, [x, y], coulomb());
+    }
     let system = model.solve();
-    assert_eq!(system.kernel().ncols(), 4);
-    let internal = system.kernel_motions().iter().filter(|m| m.internal).count();
-    assert_eq!(internal, 1);
-    assert!((system.stiffness() * system.kernel()).amax() < 1e-15 * system.stiffness().amax());
+    assert_eq!(system.kernel().ncols(), 2 * nodes.len() - pieces as usize - 2);
+    for motion in system.kernel_motions() {
+        assert!(!motion.internal);
+        let u = |node: usize| [motion.u[node][0], motion.u[node][1]];
+        let largest = motion.u.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+        let place = |node: usize| model.0.nodes[node].position;
+        let stretch =
+            |a: usize, b: usize| -> f64 { (0..2).map(|c| (place(b)[c] - place(a)[c]) * (u(b)[c] - u(a)[c])).sum() };
+        assert!(nodes.windows(2).all(|ends| f64::abs(stretch(ends[0], ends[1])) < 1e-12 * largest));
+        assert!([nodes[0], last].iter().all(|end| u(*end)[0].abs() < 1e-12 * largest));
+    }
 }
 
 /// A soft part beside a stiff one is not a mechanism.
