@@ -5,6 +5,9 @@
 //! value in the middle tell whether a cubic stands for it; then a zero inside the step shows, and is found on the
 //! function itself. Beyond a zero the scheme is the one that the LCP of the rates takes, so ties need no rule of
 //! their own; where it finds none, there is no continuous way on and the answer jumps.
+//!
+//! A variable may be zero all along, but for its rounding: a slip that symmetry forbids. Where it seems to end a scheme
+//! that is the one beyond all the same, its rounding is seen, and it counts as zero up to that from there on.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -12,6 +15,7 @@ use std::sync::Arc;
 use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
 use super::rate::{place_beside_laws, problem_rates, rate, rate_lcp};
+use super::standstill::{Rounding, Standstill, further};
 use super::start::{PathError, cold, final_basis, plane_system, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
@@ -33,8 +37,6 @@ use crate::solve::{Case, Prepared, Solved};
 
 /// A variable below minus this multiple of the largest of its kind has gone through zero.
 pub(super) const ZERO: f64 = 1e-12;
-/// Relative distance beyond a jump at which the next answer is looked for.
-const BEYOND: f64 = 1e-9;
 /// Steps and breakpoints of one path.
 pub(super) const STEPS: usize = 20_000;
 
@@ -116,6 +118,7 @@ pub(super) struct Follower<'a> {
     factors: Vec<f64>,
     /// +1 upwards, −1 downwards.
     pub(super) sign: f64,
+    rounding: Rounding,
 }
 
 /// The answer of a scheme at one value, with its slopes along the path.
@@ -130,6 +133,15 @@ pub(super) struct Place {
     pub(super) slopes: Vec<f64>,
     /// What each margin and slope is relative to.
     pub(super) sizes: Vec<f64>,
+    /// The variables that end the scheme here, with a margin that was seen of each beyond.
+    pub(super) fallen: Vec<(usize, f64)>,
+}
+
+impl Place {
+    pub(super) fn ended_by(mut self, fallen: Vec<(usize, f64)>) -> Place {
+        self.fallen = fallen;
+        self
+    }
 }
 
 /// Where the path goes on in another scheme, and whether it jumped there.
@@ -147,8 +159,9 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, to: f64) -> Re
     let Case { prepared, values, .. } = case;
     let system = plane_system(prepared, "trace", "at the prompt it follows Coulomb's cone")?;
     let start = start_of(case, name, to)?;
-    let follower =
-        Follower { case, system, name, factors: factors(prepared, values), sign: if to < start { -1.0 } else { 1.0 } };
+    let sign = if to < start { -1.0 } else { 1.0 };
+    let factors = factors(prepared, values);
+    let mut follower = Follower { case, system, name, factors, sign, rounding: Rounding::default() };
     let mut path = FrictionPath {
         name: name.to_owned(),
         start,
@@ -220,8 +233,8 @@ impl Follower<'_> {
         let point = vertex(&contact.lcp, basis)?;
         let lcp = rate_lcp(&problem, &contact, &point, &self.rates(value), self.sign);
         let slope = rate(&lcp, basis)?;
-        let mut place =
-            Place { value, margins: Vec::new(), slopes: Vec::new(), sizes: Vec::new(), problem, contact, point };
+        let (margins, slopes, sizes, fallen) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut place = Place { value, margins, slopes, sizes, fallen, problem, contact, point };
         let largest = |values: &[f64]| {
             let size = values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
             if size > 0.0 { size } else { 1.0 }
@@ -239,8 +252,10 @@ impl Follower<'_> {
                 (_, true) => (place.point.z[row], slope.z[row], length),
                 _ => (place.point.w[row], slope.w[row], force),
             };
-            place.margins.push(margin / size);
-            place.slopes.push(slope / size);
+            let (margin, slope) = (margin / size, slope / size);
+            let (margin, slope) = if self.rounding.hides(row, margin) { (0.0, 0.0) } else { (margin, slope) };
+            place.margins.push(margin);
+            place.slopes.push(slope);
             place.sizes.push(size);
         }
         (place.margins.iter().chain(&place.slopes)).all(|value| value.is_finite()).then_some(place)
@@ -253,7 +268,7 @@ impl Follower<'_> {
         pairs
     }
 
-    fn follow(&self, path: &mut FrictionPath, mut basis: Basis, to: f64) -> Result<(), PathError> {
+    fn follow(&mut self, path: &mut FrictionPath, mut basis: Basis, to: f64) -> Result<(), PathError> {
         let mut here = self.place(path.start, &basis).ok_or_else(|| self.singular(path.start))?;
         // The start may stand exactly on a limit.
         if let Ok(next) = self.scheme_beyond(&here, &basis)
@@ -263,7 +278,9 @@ impl Follower<'_> {
             here = place;
         }
         let mut jump = false;
+        let mut standstill = Standstill::default();
         for _ in 0..STEPS {
+            let from = here.value;
             let reached = self.to_end_of_scheme(path, here, &basis, to, jump)?;
             if reached.value == to {
                 return Ok(());
@@ -272,7 +289,10 @@ impl Follower<'_> {
                 path.end = PathEnd::NoAnswer;
                 return Ok(());
             };
-            Onward { basis, place: here, jump } = next;
+            if standstill.is_met_again(std::mem::replace(&mut basis, next.basis), from, reached.value, &basis) {
+                self.rounding.learn(&reached.fallen);
+            }
+            (here, jump) = (next.place, next.jump);
         }
         Err(PathError::Breakdown {
             name: self.name.to_owned(),
@@ -346,7 +366,7 @@ impl Follower<'_> {
 
     /// A value a little further on.
     fn beside(&self, value: f64, to: f64) -> f64 {
-        let beyond = value + self.sign * BEYOND * value.abs().max(1e-3);
+        let beyond = value + self.sign * further(value);
         if self.sign > 0.0 { beyond.min(to) } else { beyond.max(to) }
     }
 

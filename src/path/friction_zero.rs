@@ -70,7 +70,9 @@ impl Follower<'_> {
             if probe.margins.iter().all(|margin| *margin >= -ZERO) {
                 // It only came near: go on from there.
                 if (probe.value - here.value).abs() <= least {
-                    return Ok(probe);
+                    let falls = |k: &usize| cubics[*k].first_negative() == Some(first);
+                    let fallen = (0..cubics.len()).filter(falls).map(|k| (k, -ZERO)).collect();
+                    return Ok(probe.ended_by(fallen));
                 }
                 here = probe;
                 step = length;
@@ -92,8 +94,9 @@ impl Follower<'_> {
     /// The zero between a place where all is well and one where some variables are negative, by the Illinois method
     /// on the least of those.
     fn zero(&self, good: &Place, bad: Place, basis: &Basis) -> Place {
-        let fallen: Vec<usize> = (0..bad.margins.len()).filter(|&k| bad.margins[k] < -ZERO).collect();
-        let least = |place: &Place| fallen.iter().map(|&k| place.margins[k]).fold(f64::INFINITY, f64::min);
+        let below = (0..).zip(&bad.margins).filter(|(_, margin)| **margin < -ZERO);
+        let fallen: Vec<(usize, f64)> = below.map(|(k, margin)| (k, *margin)).collect();
+        let least = |place: &Place| fallen.iter().map(|(k, _)| place.margins[*k]).fold(f64::INFINITY, f64::min);
         let (mut a, mut b) = (good.value, bad.value);
         let (mut f_a, mut f_b) = (least(good).max(0.0), least(&bad));
         let mut best = bad;
@@ -114,7 +117,7 @@ impl Follower<'_> {
             };
             let f = least(&place);
             if f == 0.0 {
-                return place;
+                return place.ended_by(fallen);
             }
             if f > 0.0 {
                 a = x;
@@ -127,7 +130,7 @@ impl Follower<'_> {
             }
             best = place;
         }
-        self.place(b, basis).unwrap_or(best)
+        self.place(b, basis).unwrap_or(best).ended_by(fallen)
     }
 }
 

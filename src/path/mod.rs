@@ -30,6 +30,7 @@ pub mod sample;
 pub mod sensitivity;
 pub mod shakedown_limit;
 pub mod stages;
+mod standstill;
 pub mod start;
 pub mod static_shakedown;
 pub mod sweep;

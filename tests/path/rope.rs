@@ -5,13 +5,19 @@
 
 use serde_json::{Value, json};
 
+use stickslip::model::load::load_text;
+use stickslip::path::end::PathEnd;
+use stickslip::path::friction::trace;
+use stickslip::solve::prepare;
+use stickslip::watch::Quiet;
+
 use super::common::lines::{read, report, text};
 
-const TURN: f64 = 4.0 * std::f64::consts::PI;
+const ROUND: f64 = 2.0 * std::f64::consts::PI;
 
-/// `count` pairs on two turns of the unit circle, the end pieces straight on; T1 pulls at the first and T2 at the last, both 10.
-fn rope(count: usize) -> Value {
-    let turn = TURN / count as f64;
+/// `count` pairs, each a turn of the rope on the unit circle, the end pieces along y; T1 pulls at the first and T2 at the
+/// last, both 10.
+fn rope(count: usize, turn: f64) -> Value {
     let on = |k: usize| format!("d{k}");
     let place = |k: f64| {
         let (sin, cos) = ((k + 0.5) * turn).sin_cos();
@@ -41,14 +47,35 @@ fn rope(count: usize) -> Value {
 #[test]
 fn a_long_rope_is_certified_just_beyond_its_limit() {
     let count = 84;
-    let k = 0.15 * (0.5 * TURN / count as f64).tan();
+    let turn = 2.0 * ROUND / count as f64;
+    let k = 0.15 * (0.5 * turn).tan();
     let limit = 10.0 * ((1.0 + k) / (1.0 - k)).powi(count as i32);
-    let mut session = read(&rope(count).to_string());
+    let mut session = read(&rope(count, turn).to_string());
     let found = report(&mut session, "limit pull").expect("a limit");
     assert!((found["limit"].as_f64().expect("a limit") - limit).abs() < 1e-8 * limit, "{found} {limit}");
     assert_eq!((&found["confirmed"], &found["collapse"]["verdict"]), (&true.into(), &"certified".into()), "{found}");
     for (share, expected) in [(1.0 + 1e-6, "verdict certified"), (1.0 - 1e-6, "outcome answer")] {
         text(&mut session, &format!("set T2 {}", share * limit));
         text(&mut session, &format!("expect {expected}"));
+    }
+}
+
+/// Pulled by 10 at both ends, pair after pair slips inwards up to the middle, where slips are zero but for their rounding:
+/// such a slip ends no scheme, whatever its sign. The first pair tells where the path has come.
+#[test]
+fn a_slip_that_is_rounding_does_not_hold_up_a_path() {
+    let count = 150;
+    let turn = ROUND / count as f64;
+    let scenario = load_text("rope", &rope(count, turn).to_string(), None).expect("a scenario");
+    let prepared = prepare(&scenario, &Quiet).expect("sound");
+    let values = scenario.parameter_values();
+    let case = prepared.case(&scenario, &values);
+    let solved = case.solve().expect("solvable");
+    let path = trace(case, Some(&solved), "mu", 0.16).expect("a path");
+    assert_eq!((&path.end, path.breakpoints.len()), (&PathEnd::Target, 0));
+    for (mu, pairs) in &path.samples {
+        let k = mu * (0.5 * turn).tan();
+        let pressed = 10.0 * (1.0 + (1.0 - k) / (1.0 + k)) * (0.5 * turn).sin();
+        assert!((pairs[0].x_n - pressed).abs() < 1e-9 * pressed, "{} {pressed}", pairs[0].x_n);
     }
 }
