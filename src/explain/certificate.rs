@@ -17,10 +17,6 @@
 
 use std::time::Instant;
 
-use nalgebra::DVector;
-use num_rational::BigRational;
-use num_traits::{Signed, Zero};
-
 use super::exact_certificate::certify_exactly;
 use super::exact_equations::{Equations, Solved};
 use super::known_normals::with_known_normals;
@@ -31,8 +27,9 @@ use crate::contact::law::SENSES;
 use crate::contact::on_cone::widest_cone_pairs;
 use crate::contact::problem::ContactProblem;
 use crate::contact::sum::Sum;
-use crate::lcp::exact::dyadic::{nearest, rational};
+use crate::lcp::exact::dyadic::Dyadic;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
+use nalgebra::DVector;
 
 /// A margin below this share of the motion is looked at more closely: the program cannot tell it from 0.
 const UNCLEAR: f64 = 1e-5;
@@ -166,8 +163,8 @@ fn combined(row: &[Entry], factor: f64, other: &[Entry]) -> Terms {
     terms
 }
 
-fn exactly(row: &[Entry]) -> Vec<(usize, BigRational)> {
-    row.iter().map(|entry| (entry.motion, rational(entry.part.value))).collect()
+fn exactly(row: &[Entry]) -> Vec<(usize, Dyadic)> {
+    row.iter().map(|entry| (entry.motion, Dyadic::from(entry.part.value))).collect()
 }
 
 impl<'a> MotionProgram<'a> {
@@ -325,7 +322,7 @@ impl<'a> MotionProgram<'a> {
         let exactly = match equations.nearest(&amounts) {
             Solved::Free => None,
             Solved::Exactly(exactly) => {
-                amounts = exactly.iter().map(nearest).collect();
+                amounts = exactly.iter().map(Dyadic::to_f64).collect();
                 Some(exactly)
             }
             Solved::OutOfTime => {
@@ -338,22 +335,23 @@ impl<'a> MotionProgram<'a> {
 
     /// What an inequality without room demands, with the exact numbers of the data: in the plane an equation, in space
     /// that the pair is at rest.
-    fn as_equations(&self, slack: &Slack) -> Vec<Vec<(usize, BigRational)>> {
+    fn as_equations(&self, slack: &Slack) -> Vec<Vec<(usize, Dyadic)>> {
         let normal = exactly(self.motions.row(slack.pair));
         let Some(sense) = slack.sense else {
             let slips = if slack.parts.is_empty() { Vec::new() } else { self.tangential(slack.pair) };
             return std::iter::once(normal).chain(slips.into_iter().map(exactly)).collect();
         };
-        let f = rational(sense * self.pairs[slack.pair].law.friction());
-        let slip = self.tangential(slack.pair).into_iter().flat_map(exactly).map(|(k, a)| (k, -a * &f));
+        let f = Dyadic::from(-sense * self.pairs[slack.pair].law.friction());
+        let slip = self.tangential(slack.pair).into_iter().flat_map(exactly).map(|(k, a)| (k, a.times(&f)));
         vec![normal.into_iter().chain(slip).collect()]
     }
 
     /// Every sign of the proof: by f64 sums with the bounds of their rounding, exactly where they have no room.
-    fn verified(&mut self, amounts: &[f64], exact_amounts: Option<&[BigRational]>) -> Option<Certificate> {
-        let amount = |k: usize| exact_amounts.map_or_else(|| rational(amounts[k]), |exact| exact[k].clone());
-        let value = |row: &[Entry]| -> BigRational {
-            exactly(row).into_iter().filter(|(k, _)| amounts[*k] != 0.0).map(|(k, a)| a * amount(k)).sum()
+    fn verified(&mut self, amounts: &[f64], exact_amounts: Option<&[Dyadic]>) -> Option<Certificate> {
+        let own: Vec<Dyadic> = amounts.iter().map(|amount| Dyadic::from(*amount)).collect();
+        let exact = exact_amounts.unwrap_or(&own);
+        let value = |row: &[Entry]| {
+            exactly(row).into_iter().fold(Dyadic::default(), |sum, (k, a)| sum.plus(&a.times(&exact[k])))
         };
         let mut taken = Sum::default();
         let mut needed_exact = false;
@@ -384,12 +382,12 @@ impl<'a> MotionProgram<'a> {
                 continue;
             }
             // What is neither 0 nor clear of its rounding proves nothing.
-            let slips: Vec<BigRational> = self.tangential(pair).into_iter().map(value).collect();
-            let f_exact = rational(f);
-            let square = slips.iter().map(|slip| slip * slip).sum::<BigRational>() * &f_exact * &f_exact;
-            let length = slips.iter().map(nearest).fold(0.0, f64::hypot);
-            let touches = !normal.is_negative() && &normal * &normal == square;
-            if !touches && nearest(&normal) - f * length <= error {
+            let slips: Vec<Dyadic> = self.tangential(pair).into_iter().map(value).collect();
+            let square = slips.iter().fold(Dyadic::default(), |sum, slip| sum.plus(&slip.times(slip)));
+            let length = slips.iter().map(Dyadic::to_f64).fold(0.0, f64::hypot);
+            let f_exact = Dyadic::from(f);
+            let touches = !normal.is_negative() && normal.times(&normal) == square.times(&f_exact).times(&f_exact);
+            if !touches && normal.to_f64() - f * length <= error {
                 return None;
             }
         }
@@ -408,7 +406,7 @@ impl<'a> MotionProgram<'a> {
             dissipation: taken.value / largest,
             exact: needed_exact || exact_amounts.is_some(),
             of_this_load: false,
-            amounts: (0..amounts.len()).map(amount).collect(),
+            amounts: exact.iter().map(Dyadic::to_rational).collect(),
         })
     }
 }

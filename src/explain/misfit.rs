@@ -8,13 +8,10 @@
 
 use std::time::Instant;
 
-use num_rational::BigRational;
-use num_traits::{Signed, Zero};
-
 use super::exact_equations::{Equations, Solved};
 use super::proof::BUDGET;
 use crate::contact::problem::ContactProblem;
-use crate::lcp::exact::dyadic::{nearest, rational};
+use crate::lcp::exact::dyadic::Dyadic;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 use crate::lcp::problem::NOISE;
 
@@ -90,25 +87,27 @@ pub fn misfit(problem: &ContactProblem) -> Option<Misfit> {
     let mut equations = Equations::new(rooms.len(), end);
     let idle = unilateral.iter().filter(|&&joint| pressed(joint) <= TIGHT * largest);
     for &joint in tangential.iter().chain(idle) {
-        equations.add(row(joint).into_iter().map(|(k, s)| (k, rational(s))));
+        equations.add(row(joint).into_iter().map(|(k, s)| (k, Dyadic::from(s))));
     }
-    let amounts: Vec<BigRational> = match equations.nearest(&found.x) {
-        Solved::Free => found.x.iter().map(|x| rational(*x)).collect(),
+    let amounts: Vec<Dyadic> = match equations.nearest(&found.x) {
+        Solved::Free => found.x.iter().map(|x| Dyadic::from(*x)).collect(),
         Solved::Exactly(amounts) => amounts,
         Solved::OutOfTime => return None,
     };
-    let value = |joint: usize| -> BigRational { row(joint).into_iter().map(|(k, s)| rational(s) * &amounts[k]).sum() };
+    let value = |joint: usize| {
+        row(joint).into_iter().fold(Dyadic::default(), |sum, (k, s)| sum.plus(&Dyadic::from(s).times(&amounts[k])))
+    };
     let holds = tangential.iter().all(|&joint| value(joint).is_zero())
         && unilateral.iter().all(|&joint| !value(joint).is_negative());
     let (mut room, mut terms) = (0.0, 0.0);
     for ((own, size), amount) in rooms.iter().zip(&amounts) {
-        room += own * nearest(amount);
-        terms += size * nearest(amount).abs();
+        room += own * amount.to_f64();
+        terms += size * amount.to_f64().abs();
     }
     if !holds || room >= -NOISE * terms {
         return None;
     }
-    let sizes: Vec<f64> = unilateral.iter().map(|&joint| nearest(&value(joint))).collect();
+    let sizes: Vec<f64> = unilateral.iter().map(|&joint| value(joint).to_f64()).collect();
     let largest = sizes.iter().fold(0.0, |a: f64, b| a.max(*b));
     let unit = if largest > 0.0 { largest } else { 1.0 };
     let pairs = unilateral.into_iter().zip(sizes).filter(|(_, size)| *size > 0.0).map(|(pair, _)| pair).collect();

@@ -21,7 +21,7 @@ pub struct Certificate {
     pub exact: bool,
     /// Whether it is a proof for the forces along the normals that this load gives, and not for every larger load.
     pub of_this_load: bool,
-    /// The amounts of the given motions that ζ is made of, before it was scaled; empty where it was not made of them.
+    /// The amounts of the given motions that ζ is made of, at some scale; empty where it was not made of them.
     pub amounts: Vec<BigRational>,
 }
 

@@ -1,10 +1,10 @@
 //! f64 numbers as what they are, integers times powers of two: exact sums without a greatest common divisor.
 
 use num_rational::BigRational;
-use num_traits::One;
+use num_traits::{One, Signed, Zero};
 
 use crate::lcp::exact::rational_solve::clear_denominators;
-use crate::lcp::exact::scalar::{BigInt, Scalar};
+use crate::lcp::exact::scalar::{BigInt, Scalar, ratio_to_f64};
 
 /// Mantissa and exponent of a finite number: mantissa · 2^exponent, the mantissa odd or zero.
 pub fn parts(value: f64) -> (i64, i64) {
@@ -45,6 +45,86 @@ pub fn rational_rows(matrix: &nalgebra::DMatrix<f64>) -> Vec<Vec<BigRational>> {
 /// The nearest f64.
 pub fn nearest(value: &BigRational) -> f64 {
     Scalar::to_f64(value)
+}
+
+/// An integer times a power of two: sums and products of f64 numbers without a greatest common divisor.
+#[derive(Clone, Debug, Default)]
+pub struct Dyadic {
+    mantissa: BigInt,
+    exponent: i64,
+}
+
+impl Dyadic {
+    /// mantissa · 2^exponent.
+    pub fn new(mantissa: BigInt, exponent: i64) -> Dyadic {
+        Dyadic { mantissa, exponent }
+    }
+
+    /// The exponent of the two.
+    pub fn exponent(&self) -> i64 {
+        self.exponent
+    }
+
+    /// How many times 2^exponent it is, for an exponent up to its own.
+    pub fn in_units_of(&self, exponent: i64) -> BigInt {
+        if self.is_zero() { BigInt::zero() } else { &self.mantissa << (self.exponent - exponent) as u64 }
+    }
+
+    /// Whether it is 0.
+    pub fn is_zero(&self) -> bool {
+        self.mantissa.is_zero()
+    }
+
+    /// Whether it is below 0.
+    pub fn is_negative(&self) -> bool {
+        self.mantissa.is_negative()
+    }
+
+    /// The sum.
+    #[must_use]
+    pub fn plus(&self, other: &Dyadic) -> Dyadic {
+        if self.is_zero() || other.is_zero() {
+            return if self.is_zero() { other.clone() } else { self.clone() };
+        }
+        let exponent = self.exponent.min(other.exponent);
+        Dyadic { mantissa: self.in_units_of(exponent) + other.in_units_of(exponent), exponent }
+    }
+
+    /// The product.
+    #[must_use]
+    pub fn times(&self, other: &Dyadic) -> Dyadic {
+        Dyadic { mantissa: &self.mantissa * &other.mantissa, exponent: self.exponent + other.exponent }
+    }
+
+    /// The nearest f64.
+    pub fn to_f64(&self) -> f64 {
+        let (up, down) = (self.exponent.max(0) as u64, (-self.exponent).max(0) as u64);
+        ratio_to_f64(&(&self.mantissa << up), &(BigInt::one() << down))
+    }
+
+    /// The number itself.
+    pub fn to_rational(&self) -> BigRational {
+        let twos = self.mantissa.trailing_zeros().unwrap_or(0) as i64;
+        let left = (self.exponent + twos).min(0);
+        let whole =
+            Dyadic { mantissa: &self.mantissa >> twos as u64, exponent: self.exponent + twos }.in_units_of(left);
+        // An odd number over a power of two, or a whole one: nothing to cancel.
+        BigRational::new_raw(whole, BigInt::one() << -left as u64)
+    }
+}
+
+impl From<f64> for Dyadic {
+    fn from(value: f64) -> Dyadic {
+        let (mantissa, exponent) = parts(value);
+        Dyadic { mantissa: BigInt::from(mantissa), exponent }
+    }
+}
+
+impl PartialEq for Dyadic {
+    fn eq(&self, other: &Dyadic) -> bool {
+        let exponent = self.exponent.min(other.exponent);
+        self.in_units_of(exponent) == other.in_units_of(exponent)
+    }
 }
 
 /// Rows of integers, each a positive multiple `scale` of the row it stands for: signs are those of the data.
@@ -88,6 +168,22 @@ impl WholeRows {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sums_and_products_are_those_of_rationals() {
+        let numbers = [0.0, 1.0, -0.1, 3.0e200, 5e-324, -2.5, 6.0, 1e-17];
+        for a in numbers {
+            let one = Dyadic::from(a);
+            assert_eq!((one.to_f64(), one.to_rational()), (a, rational(a)));
+            for b in numbers {
+                let other = Dyadic::from(b);
+                assert_eq!(one.plus(&other).to_rational(), rational(a) + rational(b));
+                assert_eq!(one.times(&other).to_rational(), rational(a) * rational(b));
+                assert_eq!(one == other, a == b);
+                assert_eq!(one.plus(&other).is_negative(), a + b < 0.0);
+            }
+        }
+    }
 
     #[test]
     fn every_number_is_its_mantissa_times_a_power_of_two() {
