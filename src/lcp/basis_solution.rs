@@ -82,10 +82,16 @@ impl<'a> Whole<'a> {
     /// z over all rows, and p, of a basis in whose active rows M z + d p is `right`; `None` where there are more or
     /// fewer equations than unknowns, or where they are singular.
     fn solve(&self, basis: &Basis, right: Vec<f64>) -> Option<(Vec<f64>, f64)> {
-        if basis.z.len() + usize::from(basis.p) != right.len() {
-            return None;
-        }
-        let solution = self.system(basis).solve(&DVector::from_vec(right))?;
+        self.solve_by(&self.square(basis)?, basis, right)
+    }
+
+    /// The factor of the active rows, if they are as many as the unknowns.
+    fn square(&self, basis: &Basis) -> Option<Factor> {
+        (basis.z.len() + usize::from(basis.p) == basis.active.len()).then(|| self.system(basis))
+    }
+
+    fn solve_by(&self, factor: &Factor, basis: &Basis, right: Vec<f64>) -> Option<(Vec<f64>, f64)> {
+        let solution = factor.solve(&DVector::from_vec(right))?;
         let mut z = vec![0.0; self.lcp.full_size];
         basis.z.iter().zip(solution.iter()).for_each(|(&k, value)| z[k] = *value);
         Some((z, if basis.p { solution[solution.len() - 1] } else { 0.0 }))
@@ -110,10 +116,16 @@ impl<'a> Whole<'a> {
 
 /// Values of all variables at a basis; `None` where its equations are singular.
 pub fn vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<Point> {
+    Some(factored_vertex(lcp, basis)?.0)
+}
+
+/// The same with the factor of its equations, which are those of every LCP with this M.
+pub fn factored_vertex(lcp: &MirroredLcp, basis: &Basis) -> Option<(Point, Factor)> {
     let whole = Whole::new(lcp);
-    let (z, p) = whole.solve(basis, basis.active.iter().map(|&row| -whole.q(row)).collect())?;
+    let factor = whole.square(basis)?;
+    let (z, p) = whole.solve_by(&factor, basis, basis.active.iter().map(|&row| -whole.q(row)).collect())?;
     let w = whole.response(basis, &z, p, 1.0);
-    Some(Point { z, w, p })
+    Some((Point { z, w, p }, factor))
 }
 
 /// The point of a basis after one step of Newton's method from `point`, whose w (of all rows, better known than from
@@ -125,6 +137,15 @@ pub fn corrected(lcp: &MirroredLcp, basis: &Basis, point: &Point, w: &[f64]) -> 
     let p = point.p + step_p;
     let w = whole.response(basis, &z, p, 1.0);
     Some(Point { z, w, p })
+}
+
+/// Direction at a basis in which p, which is not in it, grows by 1, by the [factor](factored_vertex) of its equations;
+/// `None` where they are singular.
+pub fn direction_of_p(lcp: &MirroredLcp, basis: &Basis, factor: &Factor) -> Option<RayDirection> {
+    let whole = Whole::new(lcp);
+    let (z, _) = whole.solve_by(factor, basis, basis.active.iter().map(|&row| -whole.d(row)).collect())?;
+    let w = whole.response(basis, &z, 1.0, 0.0);
+    Some(RayDirection { entering: Variable::P, z, w, p: 1.0 })
 }
 
 /// Direction at a basis in which `entering` grows by 1; `None` where the equations are singular.

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
-use super::rate::{place_beside_laws, problem_rates, rate, rate_lcp};
+use super::rate::{place_beside_laws, problem_rates, rate_lcp};
 use super::standstill::{Rounding, Standstill, further};
 use super::start::{PathError, cold, final_basis, plane_system, state_of};
 use crate::answer::pairs::pair_states;
@@ -25,7 +25,7 @@ use crate::contact::rows::RowKind;
 use crate::contact::system::ContactSystem;
 use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
-use crate::lcp::basis_solution::vertex;
+use crate::lcp::basis_solution::{direction_of_p, factored_vertex, vertex};
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Reach};
 use crate::model::jet::Dependence;
@@ -230,9 +230,9 @@ impl Follower<'_> {
     pub(super) fn place(&self, value: f64, basis: &Basis) -> Option<Place> {
         let problem = self.problem_at(value);
         let contact = contact_lcp(&problem, Covering::Ones).ok()?;
-        let point = vertex(&contact.lcp, basis)?;
+        let (point, factor) = factored_vertex(&contact.lcp, basis)?;
         let lcp = rate_lcp(&problem, &contact, &point, &self.rates(value), self.sign);
-        let slope = rate(&lcp, basis)?;
+        let slope = direction_of_p(&lcp, basis, &factor)?;
         let (margins, slopes, sizes, fallen) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut place = Place { value, margins, slopes, sizes, fallen, problem, contact, point };
         let largest = |values: &[f64]| {
