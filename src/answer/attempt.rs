@@ -42,12 +42,14 @@ pub enum AttemptEngine {
     Substitution,
     /// Convex steps down a quadratic program that is not convex, each solved by Lemke's algorithm.
     Descent,
+    /// Joints that repeat one another kept at rest, their forces chosen within the laws.
+    AtRest,
 }
 
 impl AttemptEngine {
     /// Whether what it finds comes without pivots of the problem itself.
     pub fn is_without_pivots(self) -> bool {
-        !matches!(self, AttemptEngine::Lemke(_) | AttemptEngine::LoadPath)
+        !matches!(self, AttemptEngine::Lemke(_) | AttemptEngine::LoadPath | AttemptEngine::Descent)
     }
 }
 
@@ -148,6 +150,7 @@ impl fmt::Display for AttemptEngine {
             AttemptEngine::Bimatrix => f.write_str("bimatrix"),
             AttemptEngine::Descent => f.write_str("descent"),
             AttemptEngine::Substitution => f.write_str("substitution"),
+            AttemptEngine::AtRest => f.write_str("at-rest"),
         }
     }
 }

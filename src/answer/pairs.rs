@@ -31,6 +31,8 @@ pub struct JointState {
     pub p: f64,
     /// Pairs whose forces the motion leaves undetermined: theirs are those of least norm.
     pub free: Vec<usize>,
+    /// Whether the forces of these pairs are those of least norm, also where joints yield.
+    pub least_norm: bool,
     /// Whether friction obeys Coulomb's cone in space: where a pair slips it stands at its bound against the slip.
     pub on_cone: bool,
 }
@@ -66,7 +68,8 @@ impl JointState {
                 (z[joint], known_to(system, &joints, joint).max(z[joint].abs()), terms[joint]);
         }
         forced.into_iter().for_each(|joint| z[joint] = joints[joint].cleaned());
-        JointState { z, force, terms, z_terms, left, p, free: Vec::new(), on_cone: false }.against_file(problem)
+        JointState { z, force, terms, z_terms, left, p, free: Vec::new(), least_norm: true, on_cone: false }
+            .against_file(problem)
     }
 
     /// The state of an answer on Coulomb's cone.
@@ -88,6 +91,7 @@ impl JointState {
             z,
             p: 0.0,
             free,
+            least_norm: yielding.is_none(),
             on_cone: false,
         }
     }
@@ -96,6 +100,12 @@ impl JointState {
     pub fn of_mixed(problem: &ContactProblem, MixedState { z, forces, z_terms, .. }: MixedState) -> JointState {
         let state = JointState { z_terms, ..JointState::of(problem, z, &forces) };
         if problem.system.force_form.is_some() { state.with_least_norm(problem) } else { state }
+    }
+
+    /// The state of joints that repeat one another, found at rest.
+    pub fn at_rest(problem: &ContactProblem, found: MixedState) -> JointState {
+        let on_cone = problem.system.is_in_space() && problem.cone;
+        JointState { least_norm: true, on_cone, ..JointState::of_mixed(problem, found) }
     }
 
     /// No forces at all, on Coulomb's cone.
@@ -109,6 +119,7 @@ impl JointState {
             left: Vec::new(),
             p: 0.0,
             free: Vec::new(),
+            least_norm: false,
             on_cone: true,
         }
     }

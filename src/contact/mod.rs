@@ -16,6 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod at_rest;
 pub mod cone;
 pub mod cone_rates;
 pub mod file_data;

@@ -179,6 +179,14 @@ pub fn widest_cone_pairs(problem: &ContactProblem) -> Vec<ConePair> {
     pairs
 }
 
+/// A problem whose joints repeat one another with these joints as they are, some in force form; `None` of any other.
+pub fn as_they_are(problem: &ContactProblem) -> Option<ContactProblem> {
+    match &problem.system.yielding {
+        Some(yielding) => yielding.exactly(problem),
+        None => problem.system.force_form.is_some().then(|| problem.clone()),
+    }
+}
+
 /// What joints that repeat one another do in the plane, or on a polygon that is solved for its own sake, near this state
 /// of all joints; `None` where they do not repeat one another, or where nothing is found.
 ///
@@ -189,11 +197,7 @@ pub fn with_repeated_joints(
     (z, forces): (&DVector<f64>, &[Sum]),
     watch: &dyn Watch,
 ) -> Result<Option<MixedState>, ConeFailure> {
-    let yielded = match &problem.system.yielding {
-        Some(yielding) => yielding.exactly(problem),
-        None => problem.system.force_form.is_some().then(|| problem.clone()),
-    };
     let pairs = cone_pairs(problem);
-    yielded
+    as_they_are(problem)
         .map_or(Ok(None), |problem| MixedProblem::new(&problem, &pairs).answer(z, &|joint| forces[joint].value, watch))
 }

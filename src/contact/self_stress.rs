@@ -249,8 +249,9 @@ fn shortest(
     let size = (0..n).map(|row| slack(row, &shortest).abs()).fold(0.0, f64::max);
     let mut multipliers: Vec<(usize, f64)> = Vec::new();
     if size > 0.0 && (0..n).any(|row| slack(row, &shortest) < -NOISE * size) {
+        let weighed: Vec<DVector<f64>> = rows.iter().map(|row| &inverse * row).collect();
         let matrix: Vec<Vec<f64>> =
-            (0..n).map(|a| (0..n).map(|b| rows[a].dot(&(&inverse * &rows[b]))).collect()).collect();
+            rows.iter().map(|row| weighed.iter().map(|other| row.dot(other)).collect()).collect();
         let q: Vec<f64> = (0..n).map(|row| slack(row, &shortest) / size).collect();
         let z = solution(matrix, q)?;
         multipliers = z.iter().enumerate().filter(|(_, y)| **y > 0.0).map(|(row, y)| (row, y * size)).collect();

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::case::Case;
 use super::cone;
-use super::engines::{EXACT_PAIRS, keep_scheme, run_exact_contact, run_tableau};
+use super::engines::{EXACT_PAIRS, keep_scheme, kind, run_exact_contact, run_tableau};
 use super::error::SolveError;
 use super::finish::empty_answer;
 use super::ladder::{EXACT_BUDGET, within};
@@ -13,7 +13,7 @@ use super::plain::{PlainProblem, solve_plain_judged};
 use super::prepared::{Geometry, Prepared};
 use super::state::{LookedAt, Rest, RunData, Solved};
 use super::warm::WarmStart;
-use crate::answer::pairs::{joint_state, pair_states};
+use crate::answer::pairs::{JointState, joint_state, pair_states};
 use crate::answer::record::{AttemptRules, OutcomeKind, PolygonRecord};
 use crate::contact::kernel_correction::kernel_correction;
 use crate::contact::lcp::contact_lcp;
@@ -196,25 +196,38 @@ impl Prepared {
     ) -> Result<Solved, SolveError> {
         let system = &*problem.system;
         let mut state = joint_state(problem, &contact, &run.point);
-        let mut answer = empty_answer(&run, contact.force_unit, rules, self.size(system, &contact));
         let mut problem = problem.clone();
-        let mut note = None;
+        let (mut note, mut polygon) = (None, None);
+        let is_answer = kind(&run.outcome).is_answer();
         if system.is_in_space() {
-            answer.polygon = Some(PolygonRecord::of(problem.polygon));
-            if answer.is_answer() {
+            polygon = Some(PolygonRecord::of(problem.polygon));
+            if is_answer {
                 let found = cone::taken(&problem, state, watch)?;
                 (state, problem, note) = (found.state, found.problem, found.note);
-                answer.polygon = Some(found.record);
+                polygon = Some(found.record);
             }
-            let polygon = problem.polygon;
-            for attempt in &mut answer.attempts {
-                attempt.facets = Some(polygon.facets());
-                attempt.turn = Some(polygon.turn().to_degrees()).filter(|turn| *turn != 0.0);
-            }
-        } else if answer.is_answer() {
+        } else if is_answer {
             state = cone::with_repeated(&problem, state, watch)?;
         }
-        let problem = &problem;
+        let mut solved = self.solved_in(&problem, (contact, run), (state, polygon), (rules, extent));
+        solved.answer.notes.extend(note);
+        Ok(solved)
+    }
+
+    /// What is reported of a state of the joints, in space with what is known of its polygon.
+    pub(super) fn solved_in(
+        &self,
+        problem: &ContactProblem,
+        (contact, run): (ContactLcp, Run),
+        (state, polygon): (JointState, Option<PolygonRecord>),
+        (rules, extent): (AttemptRules, Extent),
+    ) -> Solved {
+        let mut answer = empty_answer(&run, contact.force_unit, rules, self.size(&problem.system, &contact));
+        answer.polygon = polygon;
+        for attempt in answer.attempts.iter_mut().filter(|_| polygon.is_some()) {
+            attempt.facets = Some(problem.polygon.facets());
+            attempt.turn = Some(problem.polygon.turn().to_degrees()).filter(|turn| *turn != 0.0);
+        }
         answer.pairs = pair_states(problem, &contact, &state);
         self.add_released_slips(&mut answer.pairs, problem, &state.z);
         let mut ray = None;
@@ -230,8 +243,7 @@ impl Prepared {
             }
             _ => self.complete(&mut answer, problem, &state),
         }
-        answer.notes.extend(note);
-        Ok(Solved {
+        Solved {
             cycled: matches!(run.outcome, Outcome::Cycle(_)),
             run: RunData::Contact { contact, problem: problem.clone(), pivots: run.pivots, last: run.point },
             answer,
@@ -241,7 +253,7 @@ impl Prepared {
             rest,
             looked_at: LookedAt::default(),
             retry_note: String::new(),
-        })
+        }
     }
 }
 

@@ -198,8 +198,8 @@ fn notes_on_shared_forces(problem: &ContactProblem, state: &JointState) -> Vec<S
     let otherwise = may_hold_otherwise(problem, &state.z);
     let shared: Vec<usize> = state.free.iter().copied().filter(|pair| !otherwise.contains(pair)).collect();
     let [those, own] = match problem.system.yielding {
-        Some(_) => ["those that equal and very small compliances in these joints give"; 2],
-        None => ["the forces of least norm that obey the laws", "those of least norm for the motion shown"],
+        Some(_) if !state.least_norm => ["those that equal and very small compliances in these joints give"; 2],
+        _ => ["the forces of least norm that obey the laws", "those of least norm for the motion shown"],
     };
     let kinds = [
         (

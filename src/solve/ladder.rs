@@ -158,6 +158,7 @@ impl Ladder {
             (None, OutcomeKind::CheckFailed) => "found a state that failed its check",
             (None, OutcomeKind::PivotLimit) if self.first.cycled => "cycled",
             (None, OutcomeKind::PivotLimit) => "came to no end in many pivots",
+            (None, kind) if kind.is_answer() => "found an answer on its polygon and none on the cone",
             (None, _) => "broke down",
         };
         let found = self.tried.last().map_or(String::new(), |last| last.rules.to_string());

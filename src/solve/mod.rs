@@ -15,6 +15,7 @@
 //! ```
 
 pub mod all_answers;
+mod at_rest;
 mod bimatrix;
 pub mod case;
 mod cold;

@@ -133,7 +133,13 @@ impl Prepared {
             return Ok(first);
         }
         let mut ladder = Ladder::new(first);
-        let found = ladder.climb(&retries(false), EXACT_BUDGET, watch, &attempt, &|_| false)?;
+        if let Some(found) = ladder.climb(&retries(false), EXACT_BUDGET, watch, &attempt, &|_| false)? {
+            return Ok(found);
+        }
+        let found = match self.answer_at_rest(problem, Extent::Counted, watch)? {
+            Some(again) => ladder.add(again).ok(),
+            None => None,
+        };
         Ok(found.unwrap_or_else(|| ladder.without_answer()))
     }
 }
@@ -193,6 +199,11 @@ impl Job<'_> {
                 AlongLoad::Ended(attempt) => ladder.ended(attempt),
                 AlongLoad::NotTried => {}
             }
+        }
+        if let Some(again) = self.prepared.answer_at_rest(self.problem, Extent::Whole, self.watch)?
+            && let Ok(answer) = ladder.add(again)
+        {
+            return Ok(answer);
         }
         if let Some(found) = found {
             let state = |candidate| self.prepared.enumerated_answer(self.problem, candidate);

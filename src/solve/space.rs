@@ -93,6 +93,11 @@ impl Prepared {
             }
             last = again;
         }
+        if let Some(again) = self.answer_at_rest(problem, Extent::Whole, watch)?
+            && let Ok(answer) = ladder.add(again)
+        {
+            return Ok(answer);
+        }
         Ok(ladder.with_history(on_polygon.unwrap_or(last)))
     }
 

@@ -4,6 +4,7 @@
 mod common;
 
 mod arches;
+mod at_rest;
 mod balance;
 mod beam;
 mod block;

@@ -220,7 +220,17 @@ impl<'a> Follower<'a> for Walk<'a> {
         let (z, force, terms) = (&self.standing.z, &self.standing.force, self.standing.force_sizes());
         let z_terms = DVector::zeros(z.len());
         let (z, force, terms) = (z.clone(), force.clone(), terms.clone());
-        JointState { z, force, terms, z_terms, left: Vec::new(), p: 0.0, free: Vec::new(), on_cone: false }
+        JointState {
+            z,
+            force,
+            terms,
+            z_terms,
+            left: Vec::new(),
+            p: 0.0,
+            free: Vec::new(),
+            least_norm: false,
+            on_cone: false,
+        }
     }
 
     fn states(&self) -> Vec<PairState> {

@@ -1,0 +1,159 @@
+//! Rigid bodies on repeated joints that stand at rest by a self-stress which pivots pass by.
+//!
+//! ```text
+//!        P →┌───────────────┐ W
+//!           └┬────┬────┬────┬┘
+//!            0    1    2    3     feet with different friction: what the middle ones carry is free
+//! ```
+
+use serde_json::{Value, json};
+use stickslip::answer::record::{Answer, Verdict};
+use stickslip::path::limit::{Limit, limit};
+
+use crate::common::laws::violation;
+use crate::common::*;
+
+/// Friction of the feet at 0, 1, 2, 3.
+const FEET: [f64; 4] = [0.5, 0.2, 0.3, 0.6];
+/// Weight, its place, the height of the push.
+const BLOCK: [f64; 3] = [10.0, 1.2, 0.3];
+
+fn foot(id: &str, node: &str, friction: f64) -> Value {
+    json!({ "id": id, "node": node, "against": "ground", "normal": [0, 1], "friction": friction })
+}
+
+/// The block with one more foot, which is `gap` short of the ground, and could not hold more than those beside it.
+fn block(gap: f64) -> Value {
+    let [weight, place, height] = BLOCK;
+    let mut contacts: Vec<Value> =
+        FEET.iter().enumerate().map(|(i, f)| foot(&format!("c{i}"), &format!("k{i}"), *f)).collect();
+    contacts.push(foot("short", "k4", 0.5));
+    contacts[4]["gap"] = gap.into();
+    json!({
+        "parameters": { "P": 1 },
+        "nodes": { "k0": [0, 0], "k1": [1, 0], "k2": [2, 0], "k3": [3, 0], "k4": [1.5, 0], "pushed": [0, height], "top": [place, 0.5] },
+        "contacts": contacts,
+        "rigid": [{ "id": "block", "nodes": ["k0", "k1", "k2", "k3", "k4", "pushed", "top"] }],
+        "loads": {
+            "own": { "items": [{ "point": { "at": "top", "force": [0, -weight] } }] },
+            "push": { "factor": "P", "items": [{ "point": { "at": "pushed", "force": [1, 0] } }] }
+        }
+    })
+}
+
+fn of_push(case: &Case) -> Limit {
+    let values = case.scenario.parameter_values();
+    let solved = case.solved(&[], case.scenario.rules);
+    limit(case.prepared.case(&case.scenario, &values), Some(&solved), "push").expect("a limit")
+}
+
+fn sum(answer: &Answer, read: impl Fn(&stickslip::answer::record::PairState) -> f64) -> f64 {
+    answer.pairs.iter().map(read).sum()
+}
+
+/// Proved on the far side, and there to 1e-7.
+#[track_caller]
+fn is_limit(found: &Limit, expected: f64) {
+    close("limit", found.factor.expect("a limit"), expected, 1e-7);
+    assert!(found.confirmed, "{found:?}");
+    let collapse = found.collapse.as_ref().expect("a collapse");
+    assert_eq!(collapse.verdict, Some(Verdict::Certified), "{collapse:?}");
+    assert!(found.beyond_sentence().is_some_and(|said| said.contains("proved")), "{found:?}");
+}
+
+/// Σ x_n = W and Σ x_n x = W x_W + P h put the centre of pressure to X = x_W + P h/W, and Σ f x_n is largest with all of it
+/// in the outer feet, on the chord of f over x: P = W (f_0 + (f_3 − f_0) X/3), which no self-stress exceeds.
+#[test]
+fn a_rigid_block_stands_as_long_as_some_self_stress_holds_it() {
+    let [weight, place, height] = BLOCK;
+    let rise = (FEET[3] - FEET[0]) / 3.0;
+    let expected = weight * (FEET[0] + rise * place) / (1.0 - rise * height);
+    let case = Case::json(block(0.01));
+    for push in [2.5, 2.6, 4.0, expected * (1.0 - 1e-7)] {
+        let answer = case.solve(&[("P", push)]);
+        is_answer(&answer);
+        near("pressed", sum(&answer, |pair| pair.x_n), weight, 1e-12, weight);
+        near("held", sum(&answer, |pair| pair.x_t), -push, 1e-12, push);
+        let turned: f64 = answer.pairs.iter().zip(0..4).map(|(pair, x)| f64::from(x) * pair.x_n).sum();
+        near("turned", turned, weight * place + push * height, 1e-12, turned);
+        assert!(answer.pairs.iter().all(|pair| pair.z_t == 0.0), "{:?}", answer.pairs);
+        close("gap", answer.pairs[4].z_n, 0.01, 1e-12);
+        near("laws", violation(&case.scenario, &case.scenario.parameter_values(), &answer), 0.0, 1e-12, 1.0);
+    }
+    assert_eq!(mechanism(&case.solve(&[("P", expected * (1.0 + 1e-7))])).verdict, Some(Verdict::Certified));
+    is_limit(&of_push(&case), expected);
+}
+
+/// The push reaches the block at the ground, through a bar from a runner of its own that slips under it: what is left of it
+/// is held by the block, P − f w = W (f_0 + (f_3 − f_0) x_W/3) at its limit.
+#[test]
+fn what_slips_beside_a_body_at_rest() {
+    let ([weight, place, _], [pressed, friction]) = (BLOCK, [2.0, 0.25]);
+    let mut value = block(0.0);
+    value["nodes"]["runner"] = json!([-2, 0]);
+    value["materials"] = json!({ "m": { "E": 1e4, "nu": 0 } });
+    value["sections"] = json!({ "s": { "area": 0.5 } });
+    value["bars"] =
+        json!([{ "id": "rod", "kind": "truss", "nodes": ["runner", "k0"], "material": "m", "section": "s" }]);
+    let contacts = value["contacts"].as_array_mut().expect("pairs");
+    contacts.pop();
+    contacts.push(foot("under", "runner", friction));
+    value["loads"]["own"]["items"]
+        .as_array_mut()
+        .expect("items")
+        .push(json!({ "point": { "at": "runner", "force": [0, -pressed] } }));
+    value["loads"]["push"]["items"] = json!([{ "point": { "at": "runner", "force": [1, 0] } }]);
+    let case = Case::json(value);
+    let expected = friction * pressed + weight * (FEET[0] + (FEET[3] - FEET[0]) / 3.0 * place);
+    for share in [0.6, 0.9, 1.0 - 1e-7] {
+        let push = share * expected;
+        let answer = case.solve(&[("P", push)]);
+        is_answer(&answer);
+        let runner = answer.pairs.last().expect("the runner");
+        close("slipping", runner.x_t, -friction * pressed, 1e-12);
+        // The rod: EA/L = 1e4 · 0.5/2.
+        close("slip", runner.z_t, (push - friction * pressed) / 2500.0, 1e-9);
+        near("held", sum(&answer, |pair| pair.x_t), -push, 1e-12, push);
+    }
+    is_limit(&of_push(&case), expected);
+}
+
+/// A plate on four feet at the corners of a rectangle, W and the push through its centre: x_n = W/4 ± s, and friction along
+/// the push is no more than Σ f x_n = (Σ f) W/4, whatever s is, for the sums of f over both diagonals are equal. That is
+/// reached where it does not turn the plate: −f_0 x_0 − f_1 x_1 + f_2 x_2 + f_3 x_3 = 0 with s = −W/8.
+#[test]
+fn a_plate_on_four_feet_in_space() {
+    let (weight, frictions) = (12.0, [0.5, 0.3, 0.2, 0.4]);
+    let places = [[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0]];
+    let nodes: Vec<String> = (0..4).map(|i| format!("k{i}")).collect();
+    let mut value = json!({
+        "dimension": 3,
+        "parameters": { "P": 1 },
+        "nodes": { "centre": [2, 1.5, 0] },
+        "contacts": nodes.iter().zip(frictions).map(|(node, f)| json!({ "node": node, "id": format!("on_{node}"),
+            "against": "ground", "normal": [0, 0, 1], "friction": f })).collect::<Vec<_>>(),
+        "rigid": [{ "id": "plate", "nodes": ["k0", "k1", "k2", "k3", "centre"] }],
+        "loads": {
+            "own": { "items": [{ "point": { "at": "centre", "force": [0, 0, -weight] } }] },
+            "push": { "factor": "P", "items": [{ "point": { "at": "centre", "force": [1, 0, 0] } }] }
+        }
+    });
+    nodes.iter().zip(places).for_each(|(node, place)| value["nodes"][node] = json!(place));
+    let case = Case::json(value);
+    let expected = frictions.iter().sum::<f64>() * weight / 4.0;
+    let [a, b, c, d] = frictions;
+    let s = weight / 4.0 * (c + d - a - b) / (a - b - c + d);
+    close("s", s, -weight / 8.0, 1e-14);
+    for share in [0.9, 0.99, 1.0 - 1e-6] {
+        let answer = case.solve(&[("P", share * expected)]);
+        is_answer(&answer);
+        assert!(answer.polygon.is_some_and(|polygon| polygon.cone));
+        near("pressed", sum(&answer, |pair| pair.x_n), weight, 1e-12, weight);
+        near("held", sum(&answer, |pair| pair.friction()[0]), -share * expected, 1e-12, expected);
+        near("aside", sum(&answer, |pair| pair.friction()[1]), 0.0, 1e-12, expected);
+        let bound = |pair: usize| frictions[pair] * answer.pairs[pair].x_n;
+        let held = |pair: usize| answer.pairs[pair].friction()[0].hypot(answer.pairs[pair].friction()[1]);
+        assert!((0..4).all(|pair| held(pair) <= bound(pair) * (1.0 + 1e-12)), "{:?}", answer.pairs);
+    }
+    is_limit(&of_push(&case), expected);
+}
