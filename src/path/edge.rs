@@ -19,6 +19,8 @@ const NARROW: f64 = 1e-8;
 /// A bracket of no more than this share of its place is a limit: closer to it than this answers are found and
 /// collapses are certified on the cone, whatever the angle.
 pub(super) const CLOSE: f64 = 1e-5;
+/// A proof beyond the bracket is brought nearer to where proofs begin, up to this share of its place.
+const NEARER: f64 = 1e-4;
 /// Where in the bracket a proof is looked for next, where it failed at the place before.
 const SHARES: [f64; 2] = [0.5, 0.25];
 
@@ -204,6 +206,20 @@ pub(super) fn narrowed(
         } else if farther.is_proved() {
             bracket.proof = Some(farther);
         }
+    }
+    with_nearer_proof(run, bracket)
+}
+
+/// The same with its proof brought nearer: what is proved begins somewhere between it and the run before.
+fn with_nearer_proof(run: &dyn Fn(f64) -> Result<Run, PathError>, mut bracket: Bracket) -> Result<Bracket, PathError> {
+    let mut open = bracket.none.value;
+    while let Some(proof) = &bracket.proof {
+        let middle = 0.5 * (open + proof.value);
+        if (proof.value - open).abs() <= NEARER * proof.value.abs() || middle == open || middle == proof.value {
+            break;
+        }
+        let next = run(middle)?;
+        if next.is_proved() { bracket.proof = Some(next) } else { open = middle }
     }
     Ok(bracket)
 }

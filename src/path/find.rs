@@ -1,6 +1,8 @@
 //! Where a quantity fulfils a condition over a parameter: on an exact path every place, elsewhere brackets between
 //! runs of their own.
 
+use std::cell::Cell;
+
 use super::profile::{ROUNDING, Shape, number, profile, zero};
 use super::quantity::{Facts, Value, history_for};
 use super::route::{Known, Route};
@@ -209,9 +211,20 @@ fn gather(parts: &[Part], wanted: &Wanted, place: impl Fn(f64) -> Place) -> Foun
     Found { exact: false, holds, places, covered, notes: Vec::new() }
 }
 
-/// The quantity of an answer of its own at a value.
-fn solved_value(case: Case<'_>, name: &str, at: f64, quantity: &Quantity) -> Result<Option<Value>, PathError> {
+/// The quantity of an answer of its own at a value; the values at which the polygon alone has one are kept between the ends
+/// of `polygon_only`.
+fn solved_value(
+    case: Case<'_>,
+    name: &str,
+    at: f64,
+    quantity: &Quantity,
+    polygon_only: &Cell<Option<[f64; 2]>>,
+) -> Result<Option<Value>, PathError> {
     let Some((there, solved)) = case.solved_at(&[(name, at)])? else { return Ok(None) };
+    if solved.answer.is_answer() && !solved.stands(case.rules.cone) {
+        let [from, to] = polygon_only.get().unwrap_or([at, at]);
+        polygon_only.set(Some([from.min(at), to.max(at)]));
+    }
     if !solved.answer.is_answer() && quantity.is_of_state() {
         return Ok(None);
     }
@@ -228,8 +241,9 @@ fn on_grid(
     wanted: &Wanted,
 ) -> Result<Found, PathError> {
     let [low, high] = range;
+    let polygon_only = Cell::new(None);
     let look = |at: f64| -> Result<(f64, Option<Value>, Option<i8>), PathError> {
-        let value = solved_value(case, name, at, quantity)?;
+        let value = solved_value(case, name, at, quantity, &polygon_only)?;
         let side = side(wanted, value.as_ref(), 0.0);
         Ok((at, value, side))
     };
@@ -263,6 +277,12 @@ fn on_grid(
          was narrowed to a bracket between two more; what comes and goes between two of them is not seen",
         CELLS + 1
     ));
+    if let Some([from, to]) = polygon_only.get() {
+        found.notes.push(format!(
+            "at values between {name} = {from} and {to} the answer is one of the friction polygon, and none on Coulomb's cone was \
+             found: `find least|most {name} A..B where outcome answer` counts those on the cone only"
+        ));
+    }
     if parts.iter().any(|part| part.side.is_none()) {
         found.notes.push(format!("{quantity} has no value in parts of the range"));
     }

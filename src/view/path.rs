@@ -67,6 +67,8 @@ struct FromStart<'a> {
     name: &'a str,
     start: f64,
     from_zero: bool,
+    /// What the path leads along: "an answer", in space one on the cone.
+    answers: &'static str,
     breakpoints: &'a [Breakpoint],
     pairs_at: &'a dyn Fn(usize) -> &'a [PairState],
     jump: &'static str,
@@ -77,7 +79,8 @@ impl FromStart<'_> {
     fn write(&self, out: &mut dyn Write, units: &Units, style: &Style) -> io::Result<()> {
         let name = self.name;
         if self.from_zero {
-            let text = format!("there is no answer at the present load: the path starts from {name} = 0");
+            let answers = self.answers;
+            let text = format!("no {answers} was found at the present load: the path starts from {name} = 0");
             style.paragraph(out, Role::Muted, &text)?;
         }
         if self.breakpoints.is_empty() {
@@ -102,6 +105,7 @@ pub fn write_load(out: &mut dyn Write, path: &LoadPath, units: &Units, style: &S
         name: &path.parameter.name,
         start: path.start,
         from_zero: path.from_zero,
+        answers: "answer",
         breakpoints: &path.breakpoints,
         pairs_at: &|place| &path.pairs[place],
         jump: " (after moving at constant load)",
@@ -116,6 +120,7 @@ pub fn write_on_cone(out: &mut dyn Write, path: &ConePath, units: &Units, style:
         name: &path.name,
         start: path.start,
         from_zero: path.from_zero,
+        answers: "answer on Coulomb's cone",
         breakpoints: &path.breakpoints,
         pairs_at: &|place| &path.places[place].pairs,
         jump: " (a jump to another answer)",

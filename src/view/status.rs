@@ -190,6 +190,10 @@ fn headline(answer: &Answer) -> (String, Role) {
     match &answer.ray {
         Some(ray) if answer.outcome == OutcomeKind::Ray => (format!("ray: {}", ray.class.word()), role),
         _ if answer.marginal => (format!("{word} (marginal)"), Role::Warning),
+        // Another answer than one on Coulomb's cone, which commands that look for that do not count.
+        _ if answer.is_answer() && answer.polygon.is_some_and(|polygon| !polygon.cone) => {
+            (format!("{word} (on the polygon)"), role)
+        }
         _ => (word.to_owned(), role),
     }
 }

@@ -9,7 +9,8 @@ use stickslip::answer::record::{Answer, Verdict};
 use stickslip::path::edge::{Which, edge};
 use stickslip::path::limit::{Limit, limit};
 
-use crate::common::Case;
+use crate::common::lines::{read, text};
+use crate::common::{Case, scenario_text};
 
 /// Feet of a rigid body: R = 0, whatever moves costs nothing. Each is pressed by `weight`, and pushed by 1 of the
 /// load `push` along an angle of its own, in degrees.
@@ -83,19 +84,27 @@ fn what_stands_without_friction_has_no_limit() {
 /// ```
 ///
 /// With f at the ends and f_b in the middle, k = (h/l)²: N_b = w l (5/8 − 6 k f²)/(1 + 6 k f (f_b − f)). Forces that only
-/// balance may load the middle foot more, so that nothing is proved before a push some 4/3 of that.
-#[test]
-fn answers_end_before_the_proofs_begin() {
+/// balance may load the middle foot more, up to N_a = 0 and H = f N_c + f_b N_b, l N_c = 2 h H: nothing is proved before
+/// H (1 + 2 (f_b − f) h/l) = f_b w l, some 4/3 of that. In between the friction polygon holds some pushes.
+struct Beam {
+    scenario: Value,
+    /// The push at which it slides, and beyond which nothing balances it.
+    slides: f64,
+    balanced: f64,
+}
+
+fn beam_on_three_feet() -> Beam {
     let (w, l, h, [f, f_b]) = (4.0, 4.0, 0.3, [0.1, 0.5]);
     let k = (h / l) * (h / l);
     let middle = w * l * (0.625 - 6.0 * k * f * f) / (1.0 + 6.0 * k * f * (f_b - f));
     let slides = f * w * l + (f_b - f) * middle;
+    let balanced = f_b * w * l / (1.0 + 2.0 * (f_b - f) * h / l);
     let foot = |at: &str, friction: f64| {
         json!({ "id": format!("c-{at}"), "node": format!("foot-{at}"), "against": "ground", "normal": [0, 0, 1],
             "friction": friction })
     };
     // From 2 the search over ever larger loads meets a proof at once.
-    let case = Case::json(json!({
+    let scenario = json!({
         "dimension": 3,
         "parameters": { "H": 2 },
         "materials": { "m": { "E": 1, "nu": 0 } },
@@ -111,18 +120,39 @@ fn answers_end_before_the_proofs_begin() {
             "weight": { "items": [{ "line": { "bar": "beam", "value": [0, 0, -w] } }] },
             "push": { "factor": "H", "items": [{ "point": { "at": "b", "force": [1, 0, 0] } }] }
         }
-    }));
+    });
+    Beam { scenario, slides, balanced }
+}
+
+#[test]
+fn answers_end_before_the_proofs_begin() {
+    let Beam { scenario, slides, balanced } = beam_on_three_feet();
+    let case = Case::json(scenario);
     let limit = found(&case, "H");
     let factor = limit.factor.unwrap_or_else(|| panic!("{}", limit.end_sentence()));
     assert!((factor / slides - 1.0).abs() < 1e-7, "{factor} {slides}");
     let proof = limit.proof.expect("a proof beyond");
-    assert!(!limit.confirmed && proof > 1.2 * slides && proof < 2.0 * slides, "{proof}");
-    assert!(limit.end_sentence().contains("find none") && limit.confirmation().contains("prove that there is none"));
+    assert!(!limit.confirmed && balanced > 1.3 * slides, "{balanced} {slides}");
+    assert!(proof > balanced && proof < balanced * (1.0 + 2e-4), "{proof} {balanced}");
+    for said in [limit.end_sentence(), limit.confirmation()] {
+        assert!(said.contains("friction polygon only") && said.contains("prove that there is none"), "{said}");
+    }
+}
+
+/// Between the last answer on the cone and the first proof the friction polygon has answers: each command says whose they are.
+#[test]
+fn an_answer_of_the_polygon_is_called_so() {
+    let Beam { scenario, slides, .. } = beam_on_three_feet();
+    let case = Case::json(scenario.clone());
     let values = case.scenario.parameter_values();
     let solver = case.prepared.case(&case.scenario, &values).under(case.scenario.rules);
     let edge = edge(solver, "H", [0.0, 20.0], Which::Most).expect("an edge");
     assert!((edge.value / slides - 1.0).abs() < 1e-7, "{} {slides}", edge.value);
     assert!(edge.undecided.is_some() && edge.collapse.is_some_and(|run| run.is_proved()));
+    let mut session = read(&scenario_text(scenario));
+    text(&mut session, &format!("set H {}", slides * (1.0 + 1e-6)));
+    assert!(text(&mut session, "status").contains("normal (on the polygon)"));
+    assert!(text(&mut session, "trace H").contains("no answer on Coulomb's cone was found at the present load"));
 }
 
 /// A load of zeros has no limit, however far it is looked for.

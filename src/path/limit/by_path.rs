@@ -31,6 +31,7 @@ pub(super) fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<
         beyond: None,
         bracket: None,
         proof: None,
+        polygon_only: false,
         lost: false,
     };
     look_beside(&mut limit, &path, case, negative)?;

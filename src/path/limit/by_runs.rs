@@ -62,6 +62,7 @@ pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathErr
         beyond: None,
         bracket: None,
         proof: None,
+        polygon_only: false,
         lost: false,
     };
     let Some(collapse) = collapse else { return Ok(limit) };
@@ -86,6 +87,7 @@ pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathErr
         limit.last = answer.value;
         limit.bracket = Some([answer.value, none.value]);
         limit.proof = proof.map(|proof| proof.value);
+        limit.polygon_only = none.is_polygon_only();
         (answer.value, none)
     };
     let (prepared, _) = there(collapse.value)?;

@@ -39,6 +39,8 @@ pub struct Limit {
     pub bracket: Option<[f64; 2]>,
     /// Where it is proved that there is no answer, where that lies beyond the bracket.
     pub proof: Option<f64>,
+    /// Whether the polygon has an answer at the end of the bracket, where none on the cone was found.
+    pub polygon_only: bool,
     /// Whether no answer was found just before the end of the path.
     pub(super) lost: bool,
 }
@@ -51,7 +53,11 @@ impl Limit {
             return match self.bracket {
                 None => format!("there is an answer at {name} = {}, and no collapse was found", nine_digits(self.last)),
                 Some([answer, none]) => {
-                    let proof = if self.is_proved() { "prove that there is none" } else { "find none" };
+                    let proof = match self.is_proved() {
+                        true => "prove that there is none",
+                        false if self.polygon_only => "one of the friction polygon only, none on Coulomb's cone,",
+                        false => "find none",
+                    };
                     let farther = self
                         .proof
                         .map_or(String::new(), |proof| format!(" (and prove that there is none at {name} = {proof})"));
@@ -136,7 +142,8 @@ impl Limit {
             Some([answer, none]) => {
                 let farther =
                     self.proof.map_or(String::new(), |proof| format!(", and prove that there is none at {proof}"));
-                format!("not proved: runs of their own find an answer at {answer} and none at {none}{farther}")
+                let found = if self.polygon_only { "one of the friction polygon only" } else { "none" };
+                format!("not proved: runs of their own find an answer at {answer} and {found} at {none}{farther}")
             }
             None if self.confirmed => {
                 "confirmed: a run of its own finds an answer at 0.999999 of it and none at 1.000001".to_owned()
