@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use super::pair_record::reserve;
 use super::record::{InSpace, PairState, State};
+use crate::contact::at_rest::AtRest;
 use crate::contact::cone::{ConeAnswer, MixedState};
 use crate::contact::force_form::unknowns;
 use crate::contact::problem::ContactProblem;
@@ -13,6 +14,24 @@ use crate::contact::sums::{StateForces, is_still, known_to, state_forces};
 use crate::contact::system::{ContactPair, ContactSystem};
 use crate::contact::written::ContactLcp;
 use crate::lcp::outcome::Point;
+
+/// Which of the forces that the motion of joints which repeat one another leaves undetermined are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shares {
+    /// Those of least norm that obey the laws.
+    LeastNorm,
+    /// Those that the equal small compliances of yielding joints give.
+    Compliant,
+    /// Some that obey the laws.
+    Any,
+}
+
+impl Shares {
+    /// What is taken where a state is found at once.
+    fn of(system: &ContactSystem) -> Shares {
+        if system.yielding.is_some() { Shares::Compliant } else { Shares::LeastNorm }
+    }
+}
 
 /// A vertex over the joints, in the user's units, rounding noise removed.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,10 +48,10 @@ pub struct JointState {
     pub left: Vec<Sum>,
     /// p, a force; 0 in an answer.
     pub p: f64,
-    /// Pairs whose forces the motion leaves undetermined: theirs are those of least norm.
+    /// Pairs whose forces the motion leaves undetermined …
     pub free: Vec<usize>,
-    /// Whether the forces of these pairs are those of least norm, also where joints yield.
-    pub least_norm: bool,
+    /// … and what theirs are.
+    pub shares: Shares,
     /// Whether friction obeys Coulomb's cone in space: where a pair slips it stands at its bound against the slip.
     pub on_cone: bool,
 }
@@ -68,8 +87,8 @@ impl JointState {
                 (z[joint], known_to(system, &joints, joint).max(z[joint].abs()), terms[joint]);
         }
         forced.into_iter().for_each(|joint| z[joint] = joints[joint].cleaned());
-        JointState { z, force, terms, z_terms, left, p, free: Vec::new(), least_norm: true, on_cone: false }
-            .against_file(problem)
+        let shares = Shares::of(system);
+        JointState { z, force, terms, z_terms, left, p, free: Vec::new(), shares, on_cone: false }.against_file(problem)
     }
 
     /// The state of an answer on Coulomb's cone.
@@ -91,7 +110,7 @@ impl JointState {
             z,
             p: 0.0,
             free,
-            least_norm: yielding.is_none(),
+            shares: Shares::of(&problem.system),
             on_cone: false,
         }
     }
@@ -102,10 +121,15 @@ impl JointState {
         if problem.system.force_form.is_some() { state.with_least_norm(problem) } else { state }
     }
 
-    /// The state of joints that repeat one another, found at rest.
-    pub fn at_rest(problem: &ContactProblem, found: MixedState) -> JointState {
-        let on_cone = problem.system.is_in_space() && problem.cone;
-        JointState { least_norm: true, on_cone, ..JointState::of_mixed(problem, found) }
+    /// The state of joints that repeat one another, found at rest: in the plane with the forces of least norm of its motion,
+    /// in space with those that were found.
+    pub fn at_rest(problem: &ContactProblem, AtRest { state, is_least_norm }: AtRest) -> JointState {
+        let state = JointState::of_mixed(problem, state);
+        if !problem.system.is_in_space() {
+            return state;
+        }
+        let shares = if is_least_norm { Shares::LeastNorm } else { Shares::Any };
+        JointState { shares, on_cone: problem.cone, ..state }
     }
 
     /// No forces at all, on Coulomb's cone.
@@ -119,7 +143,7 @@ impl JointState {
             left: Vec::new(),
             p: 0.0,
             free: Vec::new(),
-            least_norm: false,
+            shares: Shares::LeastNorm,
             on_cone: true,
         }
     }

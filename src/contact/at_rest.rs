@@ -37,12 +37,21 @@ const BUDGET: f64 = 10.0;
 /// Magnifications where the room in the laws is less than the program can tell from 0.
 const ZOOMS: [f64; 2] = [1e4, 1e7];
 
+/// An answer in which no pair moves that self-stress reaches.
+#[derive(Clone, Debug)]
+pub struct AtRest {
+    /// The state.
+    pub state: MixedState,
+    /// Whether its forces are those of least norm.
+    pub is_least_norm: bool,
+}
+
 /// The answer in which no pair moves that self-stress reaches; `None` where there is none, or where joints do not repeat
 /// one another.
 ///
 /// # Errors
 /// Stopped from outside.
-pub fn at_rest(problem: &ContactProblem, watch: &dyn Watch) -> Result<Option<MixedState>, ConeFailure> {
+pub fn at_rest(problem: &ContactProblem, watch: &dyn Watch) -> Result<Option<AtRest>, ConeFailure> {
     let Some(exact) = as_they_are(problem) else { return Ok(None) };
     let [reached, others] = reached_and_others(&exact.system);
     let Some(mut unknowns) = undeformed(&exact, &reached) else { return Ok(None) };
@@ -59,11 +68,11 @@ pub fn at_rest(problem: &ContactProblem, watch: &dyn Watch) -> Result<Option<Mix
     let is_open = |pair: usize| opening(pair) > 0.0 && !exact.system.pairs[pair].law.is_bilateral();
     let open: Vec<bool> = (0..pairs.len()).map(is_open).collect();
     let laws = Laws { exact: &exact, pairs: &pairs, reached: &reached, open: &open, start };
-    let Some(carried) = laws.forces() else { return Ok(None) };
+    let Some((carried, is_least_norm)) = laws.forces() else { return Ok(None) };
     for joint in (0..unknowns.len()).filter(|&joint| exact.system.is_forced(joint)) {
         unknowns[joint] = carried[joint];
     }
-    Ok(Some(state(&exact, &unknowns)))
+    Ok(Some(AtRest { state: state(&exact, &unknowns), is_least_norm }))
 }
 
 fn joints(system: &ContactSystem, pair: usize) -> impl Iterator<Item = usize> {
@@ -174,14 +183,15 @@ struct Laws<'a> {
 }
 
 impl Laws<'_> {
-    /// λ under which all laws hold: the forces of least norm, or where the laws leave no room to look for those, the
-    /// forces with the most of it.
-    fn forces(&self) -> Option<DVector<f64>> {
+    /// λ under which all laws hold, and whether they are those of least norm: so in space, unless the laws leave no room to
+    /// look for them; else those with the most room. In the plane those of least norm are found from them (see
+    /// [`super::self_stress`]).
+    fn forces(&self) -> Option<(DVector<f64>, bool)> {
         let bounds = self.reached.iter().map(|&pair| self.exact.laws[pair].fixed_bound()).fold(0.0, f64::max);
         let unit = self.start.amax().max(bounds);
         let stress = &self.exact.system.force_form.as_ref()?.self_stress;
         if unit == 0.0 {
-            return Some(self.start.clone());
+            return Some((self.start.clone(), true));
         }
         if self.is_wedged() {
             return None;
@@ -189,7 +199,7 @@ impl Laws<'_> {
         let (mut program, room) = self.program(unit, 1.0, &[]);
         program.set_costs([(room, -1.0)]);
         let Outcome::Optimum(widest) = program.solve(BUDGET) else { return None };
-        let (mut amounts, mut unloaded) = (widest.x, Vec::new());
+        let mut amounts = widest.x;
         for zoom in ZOOMS {
             if amounts[room] > ROOM {
                 break;
@@ -199,11 +209,12 @@ impl Laws<'_> {
         if amounts[room] < 0.0 {
             return None;
         }
-        if amounts[room] > 2.0 * ROOM {
-            (amounts, unloaded) = self.least_norm(unit).unwrap_or((amounts, unloaded));
-        }
+        let seeks_least = self.exact.system.is_in_space() && amounts[room] > 2.0 * ROOM;
+        let least = if seeks_least { self.least_norm(unit) } else { None };
+        let is_least_norm = least.is_some();
+        let (amounts, unloaded) = least.unwrap_or((amounts, Vec::new()));
         let carried = &self.start + stress * DVector::from_fn(stress.ncols(), |column, _| unit * amounts[column]);
-        self.without_idle(carried, &unloaded)
+        Some((self.without_idle(carried, &unloaded)?, is_least_norm))
     }
 
     /// The same forces with exactly nothing where the laws admit nothing, which the program meets to its tolerance only.

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::engines::kind;
 use super::prepared::{Geometry, Prepared};
 use crate::answer::check::check_contact;
-use crate::answer::pairs::JointState;
+use crate::answer::pairs::{JointState, Shares};
 use crate::answer::record::{
     Answer, Attempt, AttemptRules, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState, Reaction,
     Size, Start, Timings,
@@ -197,9 +197,12 @@ impl Prepared {
 fn notes_on_shared_forces(problem: &ContactProblem, state: &JointState) -> Vec<String> {
     let otherwise = may_hold_otherwise(problem, &state.z);
     let shared: Vec<usize> = state.free.iter().copied().filter(|pair| !otherwise.contains(pair)).collect();
-    let [those, own] = match problem.system.yielding {
-        Some(_) if !state.least_norm => ["those that equal and very small compliances in these joints give"; 2],
-        _ => ["the forces of least norm that obey the laws", "those of least norm for the motion shown"],
+    let [those, own] = match state.shares {
+        Shares::LeastNorm => {
+            ["the forces of least norm that obey the laws", "those of least norm for the motion shown"]
+        }
+        Shares::Compliant => ["those that equal and very small compliances in these joints give"; 2],
+        Shares::Any => ["some that obey the laws"; 2],
     };
     let kinds = [
         (

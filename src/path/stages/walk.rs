@@ -11,7 +11,7 @@ use super::follower::{Follower, Limit, Place, Targets, Way, recorded};
 use super::rate_problem::{Ended, RateProblem, Rates};
 use super::record::History;
 use super::standing::{Laws, Normal, Reached, Sense, Standing, joint_scales};
-use crate::answer::pairs::JointState;
+use crate::answer::pairs::{JointState, Shares};
 use crate::answer::record::{PairState, State};
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::{RowId, RowKind};
@@ -228,7 +228,7 @@ impl<'a> Follower<'a> for Walk<'a> {
             left: Vec::new(),
             p: 0.0,
             free: Vec::new(),
-            least_norm: false,
+            shares: Shares::LeastNorm,
             on_cone: false,
         }
     }
