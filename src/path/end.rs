@@ -1,5 +1,6 @@
 //! Why a path ends.
 
+use super::beside::nine_digits;
 use crate::answer::record::Ray;
 use crate::lcp::outcome::RayDirection;
 use crate::text::words::short;
@@ -13,6 +14,9 @@ pub enum PathEnd {
     Turning,
     /// At the limit load.
     Limit(RayDirection),
+    /// At a load beyond which nothing resists the motion in which the path ends, while a run of its own finds an answer
+    /// just beyond, at this value.
+    AnswerBeyond(f64),
     /// At a value beyond which a collapse on Coulomb's cone is certified.
     Collapse(Box<Ray>),
     /// Nowhere: the last scheme holds for every larger load.
@@ -26,6 +30,7 @@ pub enum PathEnd {
 impl PathEnd {
     /// In a sentence; `name` is what was followed, `at` where the path ended.
     pub fn sentence(&self, name: &str, at: f64) -> String {
+        let end = nine_digits(at);
         let at = short(at);
         match self {
             PathEnd::Target => format!("the target {name} = {at} is reached"),
@@ -42,6 +47,11 @@ impl PathEnd {
                     ray.mode
                 )
             }
+            PathEnd::AnswerBeyond(beyond) => format!(
+                "the path ends at {name} = {end}, but an answer exists at {name} = {}: not the largest load that can be \
+                 carried",
+                nine_digits(*beyond)
+            ),
             PathEnd::Unbounded => format!("beyond {name} = {at} nothing changes any more, however large the load"),
             PathEnd::Returned => format!("the path came back to {name} = {at} through turning points"),
             PathEnd::NoAnswer => {

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
+use super::beside::{BESIDE, Beside, search, size};
 use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
 use super::load_parameter::LoadParameter;
-use super::start::{PIVOTS, PathError, cold, final_basis, finite_target, plane_system, state_of};
+use super::start::{PIVOTS, PathError, cold, final_basis, finite_target, is_off_paths, plane_system, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
 use crate::contact::load_path::{is_answer, path_lcp};
@@ -19,6 +20,7 @@ use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::lcp::outcome::Point;
 use crate::lcp::parametric::{End, Parametric, Path, Reach};
+use crate::lcp::problem::NOISE;
 use crate::solve::problem::{contact_problem, factors};
 use crate::solve::{Case, Prepared, Solved};
 use crate::text::words::short;
@@ -30,8 +32,10 @@ pub struct LoadPath {
     pub parameter: LoadParameter,
     /// Factor where it starts.
     pub start: f64,
-    /// Whether it starts from factor 0 because the present state is no answer.
+    /// Whether it starts from factor 0 because the present state is no answer, or one that no path starts from …
     pub from_zero: bool,
+    /// … and whether it is the latter.
+    pub is_present_off_paths: bool,
     /// Factors of the knots, in the order of the path.
     pub factors: Vec<f64>,
     /// The pairs at each knot.
@@ -51,6 +55,8 @@ pub struct LoadPath {
     all_factors: Vec<f64>,
     direction: DVector<f64>,
     sign: f64,
+    /// The run just beyond its end, where nothing resists the motion in which it ends.
+    pub(super) beside_end: Option<Arc<Beside>>,
 }
 
 /// What to follow and how far.
@@ -133,6 +139,7 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadRea
         parameter,
         start,
         from_zero,
+        is_present_off_paths: solved.is_some_and(is_off_paths),
         factors: path.knots.iter().map(|knot| start + sign * knot.t).collect(),
         pairs: Vec::new(),
         breakpoints: Vec::new(),
@@ -145,12 +152,14 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadRea
         all_factors,
         direction,
         sign,
+        beside_end: None,
     };
     if followed.end == PathEnd::Target
         && let (Some(last), Some(to)) = (followed.factors.last_mut(), reach.to)
     {
         *last = to;
     }
+    followed.look_beyond(case)?;
     followed.describe(prepared);
     Ok(followed)
 }
@@ -191,12 +200,44 @@ impl LoadPath {
         all
     }
 
-    /// The limit factor, without a unit, where the path ends in one.
+    /// The limit factor, without a unit, where the path ends in one; one that is rounding beside the present value is 0.
     pub fn limit(&self) -> Option<f64> {
+        let last = self.factors.last().copied().filter(|_| matches!(self.end, PathEnd::Limit(_)));
+        last.map(|factor| if factor.abs() <= NOISE * self.parameter.present.abs() { 0.0 } else { factor })
+    }
+
+    /// The factor just beyond the end at which there is an answer all the same, where nothing resists the motion in which
+    /// the path ends.
+    pub fn answer_beyond(&self) -> Option<f64> {
         match self.end {
-            PathEnd::Limit(_) => self.factors.last().copied(),
+            PathEnd::AnswerBeyond(factor) => Some(factor),
             _ => None,
         }
+    }
+
+    /// A run of its own at a factor.
+    pub(super) fn run_at(&self, case: Case<'_>, factor: f64) -> Result<Beside, PathError> {
+        Beside::run(&self.parameter, self.moves_loads(), case, factor)
+    }
+
+    /// Looks just beyond a path in whose last motion nothing resists: where there is an answer all the same its end is no
+    /// limit.
+    fn look_beyond(&mut self, case: Case<'_>) -> Result<(), PathError> {
+        let Some(factor) = self.limit() else { return Ok(()) };
+        let outwards = self.last_rise() * BESIDE * size(factor, self.parameter.present);
+        let beyond = self.run_at(case, factor + outwards)?;
+        if beyond.is_plain_answer() {
+            self.end = PathEnd::AnswerBeyond(beyond.value);
+        }
+        self.beside_end = Some(Arc::new(beyond));
+        Ok(())
+    }
+
+    /// The sign of the last change of the factor, which falls beyond a turning point.
+    fn last_rise(&self) -> f64 {
+        let steps = self.path.knots.windows(2).map(|ends| ends[1].t - ends[0].t);
+        let last = steps.rev().find(|step| *step != 0.0).unwrap_or(1.0);
+        self.sign * last.signum()
     }
 
     /// The LCP the path runs in and the row names of its points.
@@ -317,6 +358,22 @@ impl LoadPath {
 
     /// How the path ended, in a sentence.
     pub fn end_sentence(&self) -> String {
-        self.end.sentence(&self.parameter.name, self.factors.last().copied().unwrap_or(self.start))
+        let name = &self.parameter.name;
+        let sentence = self.end.sentence(name, self.factors.last().copied().unwrap_or(self.start));
+        match self.answer_beyond() {
+            Some(beyond) => format!("{sentence}; {} looks further", self.search(beyond)),
+            None => sentence,
+        }
+    }
+
+    /// The command that looks for answers further on.
+    fn search(&self, beyond: f64) -> String {
+        let name = &self.parameter.name;
+        let is_way_of_limit = (self.sign < 0.0) == (self.parameter.present < 0.0);
+        // Answers under another self-stress of joints that repeat one another are followed there.
+        if self.start_problem.system.repeats_joints() && is_way_of_limit {
+            return format!("`limit {name}`");
+        }
+        search(name, beyond, beyond - self.start)
     }
 }

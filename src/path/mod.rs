@@ -1,5 +1,6 @@
 //! Paths: how the answer changes with the load, with friction and with history, breakpoint by breakpoint.
 
+mod beside;
 pub mod calibrate;
 pub mod change;
 mod cone_step;

@@ -102,8 +102,8 @@ impl<'a> Route<'a> {
         if low < present && present < high {
             starts.push((present, vec![low, high]));
         }
-        let mut how = "";
-        for (start, targets) in starts {
+        let (mut how, mut off_paths) = ("", false);
+        'starts: for (start, targets) in starts {
             let there = case.at(name, start)?;
             let solved = match solve(there.case(case))? {
                 Ok(solved) => solved,
@@ -115,6 +115,13 @@ impl<'a> Route<'a> {
             let there = Arc::new(there);
             for target in targets {
                 match Way::follow(there.case(case), &solved, name, target) {
+                    // Not from the answer at the start, or not to the end of the answers.
+                    Ok(Way::Load(path)) if path.from_zero || path.answer_beyond().is_some() => {
+                        off_paths = true;
+                        route.legs.clear();
+                        route.stretches.clear();
+                        continue 'starts;
+                    }
                     Ok(way) => route.take(Leg { way, there: Arc::clone(&there) }),
                     // Another dependence, or numbers that broke down: no exact path.
                     Err(
@@ -128,6 +135,9 @@ impl<'a> Route<'a> {
             }
             route.stretches.sort_by(|a, b| a.from.total_cmp(&b.from));
             return Ok(Some(route));
+        }
+        if off_paths {
+            return Ok(None);
         }
         Err(PathError::NoStart { name: name.to_owned(), at: low, how: format!("with the outcome {how}") })
     }

@@ -193,6 +193,11 @@ pub fn final_basis(solved: &Solved) -> Option<Basis> {
     })
 }
 
+/// Whether it is an answer that no path starts from, for no scheme has it as its vertex.
+pub(super) fn is_off_paths(solved: &Solved) -> bool {
+    solved.answer.is_answer() && final_basis(solved).is_none()
+}
+
 /// Whether the vertex of the scheme is this point (where there are several answers it may be another one).
 fn is_at(contact: &ContactLcp, basis: &Basis, point: &Point) -> bool {
     let largest = point.z.iter().fold(0.0, |a: f64, b| a.max(b.abs()));

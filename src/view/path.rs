@@ -56,9 +56,12 @@ fn breakpoints(
 fn role_of(end: &PathEnd) -> Role {
     match end {
         PathEnd::Target | PathEnd::Unbounded => Role::Muted,
-        PathEnd::Turning | PathEnd::Limit(_) | PathEnd::Collapse(_) | PathEnd::Returned | PathEnd::NoAnswer => {
-            Role::Warning
-        }
+        PathEnd::Turning
+        | PathEnd::Limit(_)
+        | PathEnd::AnswerBeyond(_)
+        | PathEnd::Collapse(_)
+        | PathEnd::Returned
+        | PathEnd::NoAnswer => Role::Warning,
     }
 }
 
@@ -66,9 +69,8 @@ fn role_of(end: &PathEnd) -> Role {
 struct FromStart<'a> {
     name: &'a str,
     start: f64,
-    from_zero: bool,
-    /// What the path leads along: "an answer", in space one on the cone.
-    answers: &'static str,
+    /// Why it starts from 0, where it does.
+    from_zero: Option<&'static str>,
     breakpoints: &'a [Breakpoint],
     pairs_at: &'a dyn Fn(usize) -> &'a [PairState],
     jump: &'static str,
@@ -78,9 +80,8 @@ struct FromStart<'a> {
 impl FromStart<'_> {
     fn write(&self, out: &mut dyn Write, units: &Units, style: &Style) -> io::Result<()> {
         let name = self.name;
-        if self.from_zero {
-            let answers = self.answers;
-            let text = format!("no {answers} was found at the present load: the path starts from {name} = 0");
+        if let Some(why) = self.from_zero {
+            let text = format!("{why}: the path starts from {name} = 0");
             style.paragraph(out, Role::Muted, &text)?;
         }
         if self.breakpoints.is_empty() {
@@ -104,8 +105,10 @@ pub fn write_load(out: &mut dyn Write, path: &LoadPath, units: &Units, style: &S
     let way = FromStart {
         name: &path.parameter.name,
         start: path.start,
-        from_zero: path.from_zero,
-        answers: "answer",
+        from_zero: path.from_zero.then_some(match path.is_present_off_paths {
+            true => "no pivots lead on from the answer at the present load",
+            false => "no answer was found at the present load",
+        }),
         breakpoints: &path.breakpoints,
         pairs_at: &|place| &path.pairs[place],
         jump: " (after moving at constant load)",
@@ -119,8 +122,7 @@ pub fn write_on_cone(out: &mut dyn Write, path: &ConePath, units: &Units, style:
     let way = FromStart {
         name: &path.name,
         start: path.start,
-        from_zero: path.from_zero,
-        answers: "answer on Coulomb's cone",
+        from_zero: path.from_zero.then_some("no answer on Coulomb's cone was found at the present load"),
         breakpoints: &path.breakpoints,
         pairs_at: &|place| &path.places[place].pairs,
         jump: " (a jump to another answer)",

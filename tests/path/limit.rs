@@ -18,9 +18,54 @@ fn where_a_path_ends_with_answers_beyond_the_limit_lies_farther() {
         text(&mut wall, &format!("expect outcome {outcome}"));
     }
     text(&mut wall, "set H 1");
+    // The path itself knows one self-stress, and says that it is not the only one.
+    let path = report(&mut wall, "trace h").unwrap();
+    assert!(path["limit"].is_null() && path["answer_beyond"].as_f64() < Some(1.6), "{path}");
+    assert!(text(&mut wall, "trace h").contains("`limit h` looks further"));
     for command in ["limit h", "show limit h", "summary"] {
         let shown = text(&mut wall, command);
         assert!(shown.contains("1.6") || shown.contains("1.59999"), "{command}: {shown}");
+    }
+}
+
+/// Two pairs of which the second, k, is pressed by 1 + z_n/2 where the first opens by z_n, and free to slide under the push h:
+///
+/// ```text
+///     λ_1 = (z_n + k_n/2 − z_t + 0.6,  −z_n + 1.5 z_t − 1),      λ_k = (k_n + z_n/2 + 1,  h)
+/// ```
+/// With k at rest the first sticks, for 1 ≤ 2 · 0.6, or is open by z = (0.2, 0.8), or slips by 0.4. A push that starts where
+/// it sticks slides k at h = f · 1 = 0.5; where it is open k holds up to 0.5 · 1.1.
+#[test]
+fn the_end_of_a_path_with_answers_beyond_is_no_limit() {
+    let mut pairs = read(
+        r#"{ "format": "stickslip/1", "title": "pairs", "parameters": { "H": 0.1 }, "contact_system": { "pairs": ["c", "k"],
+             "stiffness": [[1, 0.5, -1, 0], [0.5, 1, 0, 0], [-1, 0, 1.5, 0], [0, 0, 0, 0]], "kernel": [[0, 0, 0, 1]],
+             "loads": { "w": { "vector": [0.6, 1, -1, 0] }, "h": { "factor": "H", "vector": [0, 0, 0, 1] } },
+             "friction": [2, 0.5] } }"#,
+    );
+    for command in ["limit h", "trace h"] {
+        let found = report(&mut pairs, command).unwrap();
+        assert!(found["limit"].is_null(), "{found}");
+        let beyond = found["answer_beyond"].as_f64().expect("an answer beyond");
+        assert!(beyond > 0.5 && beyond < 0.5001, "{found}");
+        let end = found["end"].as_str().expect("a sentence");
+        assert!(end.contains("the path ends at h = 0.5,") && end.contains("not the largest load that can be carried"));
+        let shown = text(&mut pairs, command);
+        assert!(shown.contains("an answer exists") && !shown.contains("limit load"), "{shown}");
+        // The command that the sentence names is one, and finds the rest of the answers.
+        let further = end.split('`').nth(1).expect("a command").to_owned();
+        assert!(text(&mut pairs, &further).contains("h = 0.55 "), "{further}");
+    }
+    let found = report(&mut pairs, "limit h").unwrap();
+    assert!(found["confirmed"] == false && found["safety"].is_null() && found["collapse"].is_null(), "{found}");
+    for command in ["show limit h", "summary"] {
+        let shown = text(&mut pairs, command).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(shown.contains("an answer exists") || shown.contains("with answers beyond"), "{command}: {shown}");
+        assert!(!shown.contains("confirmed"), "{command}: {shown}");
+    }
+    for (value, outcome) in [(0.5001, "answer"), (0.5499, "answer"), (0.5501, "ray")] {
+        text(&mut pairs, &format!("set H {value}"));
+        text(&mut pairs, &format!("expect outcome {outcome}"));
     }
 }
 

@@ -11,6 +11,7 @@ use stickslip::answer::record::{Answer, Verdict};
 use stickslip::path::limit::{Limit, limit};
 
 use crate::common::laws::violation;
+use crate::common::lines::{read, report, text};
 use crate::common::*;
 
 /// Friction of the feet at 0, 1, 2, 3.
@@ -156,4 +157,29 @@ fn a_plate_on_four_feet_in_space() {
         assert!((0..4).all(|pair| held(pair) <= bound(pair) * (1.0 + 1e-12)), "{:?}", answer.pairs);
     }
     is_limit(&of_push(&case), expected);
+}
+
+/// What starts from an answer that no pivots led to: each command says what is so of it.
+#[test]
+fn an_answer_at_rest_is_an_answer_to_every_command() {
+    let [weight, place, height] = BLOCK;
+    let rise = (FEET[3] - FEET[0]) / 3.0;
+    let expected = weight * (FEET[0] + rise * place) / (1.0 - rise * height);
+    let mut session = read(&scenario_text(block(0.01)));
+    text(&mut session, "set P 4");
+    let path = report(&mut session, "trace push").expect("a path");
+    assert!(path["limit"].is_null() && path["from_zero"] == true, "{path}");
+    assert!(path["answer_beyond"].as_f64().is_some_and(|beyond| beyond < expected), "{path}");
+    let said = text(&mut session, "trace push");
+    assert!(said.contains("no pivots lead on from the answer at the present load") && !said.contains("limit load"));
+    let found = report(&mut session, "limit push").expect("a limit");
+    close("limit", found["limit"].as_f64().expect("a limit"), expected, 1e-7);
+    // More weight holds more.
+    let own = report(&mut session, "limit own").expect("an end");
+    assert!(own["limit"].is_null() && own["end"].as_str().is_some_and(|end| end.contains("no collapse was found")));
+    for range in ["0..5", "3..5"] {
+        let [from, to] = [&range[..1], &range[3..]];
+        let said = text(&mut session, &format!("find push {range} where x_n c0 > 0"));
+        assert!(said.contains(&format!("x_n c0 > 0 for push from {from} to {to}")), "{said}");
+    }
 }

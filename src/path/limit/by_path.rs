@@ -2,22 +2,21 @@
 
 use std::sync::Arc;
 
-use super::record::{BESIDE, Limit, beside, size};
+use super::record::Limit;
 use crate::answer::record::Verdict;
 use crate::contact::problem::ContactProblem;
 use crate::explain::ray;
-use crate::lcp::problem::NOISE;
-use crate::model::rules::{Covering, Rules};
+use crate::model::rules::Covering;
+use crate::path::beside::{BESIDE, Beside, size};
 use crate::path::end::PathEnd;
 use crate::path::load::LoadPath;
 use crate::path::start::PathError;
-use crate::solve::{Case, Prepared};
+use crate::solve::Case;
 
 /// What the end of a path says of the limit.
 pub(super) fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<Limit, PathError> {
     let present = path.parameter.present;
-    // A limit that is rounding beside the present value is 0.
-    let factor = path.limit().map(|factor| if factor.abs() <= NOISE * present.abs() { 0.0 } else { factor });
+    let factor = path.limit();
     let safety = factor.filter(|_| present != 0.0).map(|factor| factor / present);
     let mut limit = Limit {
         name: path.parameter.name.clone(),
@@ -28,7 +27,7 @@ pub(super) fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<
         safety,
         collapse: None,
         confirmed: false,
-        beyond: None,
+        beyond: path.answer_beyond(),
         bracket: None,
         proof: None,
         polygon_only: false,
@@ -45,31 +44,24 @@ fn look_beside(limit: &mut Limit, path: &LoadPath, case: Case<'_>, negative: boo
         // Before a turning point there are answers, unless the path was led there by rounding.
         if let PathEnd::Turning = &path.end {
             let inside = limit.last - BESIDE * (limit.last - path.start);
-            limit.lost = !beside_answers(path, case, inside)?;
+            limit.lost = !path.run_at(case, inside)?.solved.answer.is_answer();
         }
         return Ok(());
     };
     let outwards = if negative { -1.0 } else { 1.0 } * BESIDE * size(factor, limit.present);
-    let over = factor + outwards;
-    let solve = |prepared: &Prepared| Case { prepared, ..case }.under(Rules::default()).solve_pairs();
-    let (there, factors) = beside(&path.parameter, path.moves_loads(), case, over)?;
-    let Some(system) = there.system() else { return Ok(()) };
-    let above = solve(&there)?;
-    if above.answer.is_answer() && !above.answer.marginal {
-        (limit.factor, limit.safety, limit.beyond) = (None, None, Some(over));
-        return Ok(());
-    }
+    let Some(Beside { value, prepared, factors, solved: above }) = path.beside_end.as_deref() else { return Ok(()) };
+    let Some(system) = prepared.system() else { return Ok(()) };
     if factor != 0.0 && !above.answer.is_answer() {
-        limit.confirmed = beside_answers(path, case, factor - outwards)?;
+        limit.confirmed = path.run_at(case, factor - outwards)?.solved.answer.is_answer();
         limit.lost = !limit.confirmed;
     }
-    let problem = ContactProblem { system: Arc::clone(system), factors, ..path.problem_at(over) };
+    let problem = ContactProblem { system: Arc::clone(system), factors: factors.clone(), ..path.problem_at(*value) };
     let mut collapse = ray::look(&problem, path.contact(), direction, 0.0);
     if let Some(found) = &above.ray {
         collapse.class = found.class;
     }
-    ray::certify_ray(&mut collapse, &problem, there.built());
-    ray::explain(&mut collapse, &problem, there.built());
+    ray::certify_ray(&mut collapse, &problem, prepared.built());
+    ray::explain(&mut collapse, &problem, prepared.built());
     let mut collapse = collapse.record(system, Covering::default());
     collapse.p = 0.0;
     // Where no motion proves it, the run beside the limit may have shown that there is no answer there.
@@ -79,10 +71,4 @@ fn look_beside(limit: &mut Limit, path: &LoadPath, case: Case<'_>, negative: boo
     }
     limit.put_collapse(collapse);
     Ok(())
-}
-
-/// Whether a run of its own finds an answer at a value.
-fn beside_answers(path: &LoadPath, case: Case<'_>, value: f64) -> Result<bool, PathError> {
-    let (there, _) = beside(&path.parameter, path.moves_loads(), case, value)?;
-    Ok(Case { prepared: &there, ..case }.under(Rules::default()).solve_pairs()?.answer.is_answer())
 }

@@ -3,8 +3,9 @@
 
 use nalgebra::DVector;
 
-use super::record::{Limit, beside, size};
+use super::record::Limit;
 use crate::contact::sum::LAW_ROUNDING;
+use crate::path::beside::{size, there};
 use crate::path::edge::{Bracket, CLOSE, Run, narrowed};
 use crate::path::load_parameter::LoadParameter;
 use crate::path::start::PathError;
@@ -23,10 +24,10 @@ pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathErr
     if grown_or_own.system().is_some_and(|system| parameter.direction(system).amax() == 0.0) {
         return Err(PathError::Idle(parameter.name));
     }
-    let there = |value: f64| beside(&parameter, grown.is_some(), case, value);
+    let prepared_at = |value: f64| there(&parameter, grown.is_some(), case, value).map(|(prepared, _)| prepared);
     let run = |value: f64| -> Result<Run, PathError> {
         case.watch.progress(&format!("{name} = {value}"), 0.0);
-        let (prepared, _) = there(value)?;
+        let prepared = prepared_at(value)?;
         Run::of(value, Case { prepared: &prepared, ..case })
     };
     let present = parameter.present;
@@ -90,7 +91,7 @@ pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathErr
         limit.polygon_only = none.is_polygon_only();
         (answer.value, none)
     };
-    let (prepared, _) = there(collapse.value)?;
+    let prepared = prepared_at(collapse.value)?;
     let found = Case { prepared: &prepared, ..case }.solve()?.answer.ray;
     if !is_none && (answer - collapse.value).abs() > CLOSE * size(collapse.value, present) {
         limit.collapse = found;

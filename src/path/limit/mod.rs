@@ -7,10 +7,10 @@ mod record;
 use self::by_path::of_path;
 use self::by_runs::limit_by_runs;
 pub use self::record::Limit;
-use self::record::{BESIDE, size};
+use super::beside::{BESIDE, size};
 use super::edge::{Which, edge};
 use super::load::{LoadReach, trace};
-use super::start::PathError;
+use super::start::{PathError, is_off_paths};
 use crate::solve::{Case, Solved};
 
 /// Finds the limit of a load case or load parameter from the present answer (from 0 where there is none): upwards, or
@@ -23,11 +23,15 @@ pub fn limit(case: Case<'_>, solved: Option<&Solved>, name: &str) -> Result<Limi
     if case.prepared.is_in_space() {
         return limit_by_runs(case, name);
     }
+    // A path knows one self-stress of joints that repeat one another; answers go on under others.
+    let repeats = case.prepared.system().is_some_and(|system| system.repeats_joints());
+    if repeats && solved.is_some_and(is_off_paths) {
+        return limit_by_runs(case, name);
+    }
     let to = negative.then_some(f64::NEG_INFINITY);
     let path = trace(case, solved, name, LoadReach { to, through: false })?;
     let found = of_path(case, path, negative)?;
-    // A path knows one self-stress of joints that repeat one another; answers go on under others.
-    if found.beyond.is_some() && case.prepared.system().is_some_and(|system| system.repeats_joints()) {
+    if repeats && found.beyond.is_some() {
         return limit_by_runs(case, name);
     }
     if found.lost { bracketed(case, name, found) } else { Ok(found) }

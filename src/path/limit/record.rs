@@ -1,16 +1,10 @@
 //! What is known of the limit of a load: factor, safety, how the structure collapses, and what has been proved of it.
 
 use crate::answer::record::{Ray, Verdict};
+use crate::path::beside::{BESIDE, nine_digits, search, size};
 use crate::path::end::PathEnd;
 use crate::path::load::LoadPath;
-use crate::path::load_parameter::LoadParameter;
-use crate::path::start::PathError;
-use crate::solve::problem::factors;
-use crate::solve::{Case, Prepared};
 use crate::text::number::short;
-
-/// The limit is confirmed by independent runs at (1 ± this) of it.
-pub(super) const BESIDE: f64 = 1e-6;
 
 /// What was found about the limit of a load.
 #[derive(Clone, Debug)]
@@ -73,26 +67,17 @@ impl Limit {
                  there is none at {name} = {none}"
             );
         }
-        let Some(beyond) = self.beyond else {
-            return match (&path.end, path.breakpoints.last()) {
-                // a service limit is looked for as well as a collapse: what happens on the way is said
-                (PathEnd::Unbounded, Some(last)) => format!(
-                    "{} lies at {name} = {}, where {}; beyond it nothing changes any more, however large the load \
-                     (`trace {name}` shows the way)",
-                    if path.breakpoints.len() > 1 { "the last change" } else { "the only change" },
-                    nine_digits(last.value),
-                    last.sentence
-                ),
-                _ => path.end_sentence(),
-            };
-        };
-        format!(
-            "the path ends at {name} = {}, but an answer exists at {name} = {}: not the largest load that can be carried; \
-             {} looks further",
-            nine_digits(self.last),
-            nine_digits(beyond),
-            self.search(beyond, beyond - path.start)
-        )
+        match (&path.end, path.breakpoints.last()) {
+            // a service limit is looked for as well as a collapse: what happens on the way is said
+            (PathEnd::Unbounded, Some(last)) => format!(
+                "{} lies at {name} = {}, where {}; beyond it nothing changes any more, however large the load \
+                 (`trace {name}` shows the way)",
+                if path.breakpoints.len() > 1 { "the last change" } else { "the only change" },
+                nine_digits(last.value),
+                last.sentence
+            ),
+            _ => path.end_sentence(),
+        }
     }
 
     /// What is known of the loads beyond the limit, in a sentence; `None` without a limit.
@@ -107,7 +92,7 @@ impl Limit {
         let factor = self.factor?;
         let size = size(factor, self.present);
         let reach = if factor.abs() < size { size.copysign(self.present) } else { factor };
-        let search = self.search(factor + BESIDE * reach, reach);
+        let search = search(&self.name, factor + BESIDE * reach, reach);
         Some(format!("whether loads beyond it can be carried is not proved: {search} looks"))
     }
 
@@ -152,13 +137,6 @@ impl Limit {
                 .to_owned(),
         }
     }
-
-    /// The command that looks for answers from a value on, as far as `reach`.
-    fn search(&self, from: f64, reach: f64) -> String {
-        let to = from + reach;
-        let (low, high) = (nine_digits(from.min(to)), nine_digits(from.max(to)));
-        format!("`find {} {low}..{high} where outcome answer`", self.name)
-    }
 }
 
 impl Limit {
@@ -176,32 +154,4 @@ impl Limit {
             (None, None, None, None) => format!("none found up to {at}"),
         }
     }
-}
-
-/// With nine significant digits, which tell apart what lies [`BESIDE`] from one another.
-fn nine_digits(value: f64) -> f64 {
-    format!("{value:.8e}").parse().unwrap_or(value)
-}
-
-/// The structure under another value of what is followed, made ready, and its load factors.
-pub(super) fn beside(
-    parameter: &LoadParameter,
-    moves_loads: bool,
-    case: Case<'_>,
-    value: f64,
-) -> Result<(Prepared, Vec<f64>), PathError> {
-    if moves_loads {
-        // Where the parameter stands in the loads themselves, they are read anew at this value.
-        let there = case.at(&parameter.name, value)?;
-        let factors = factors(&there.prepared, &there.values);
-        return Ok((there.prepared.with_factors(&factors), factors));
-    }
-    let mut factors = factors(case.prepared, case.values);
-    parameter.drive(&mut factors, value);
-    Ok((case.prepared.with_factors(&factors), factors))
-}
-
-/// The size of a limit: one of 0 has none of its own.
-pub(super) fn size(factor: f64, present: f64) -> f64 {
-    [factor.abs(), present.abs()].into_iter().find(|size| *size > 0.0).unwrap_or(1.0)
 }

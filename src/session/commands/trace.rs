@@ -265,6 +265,7 @@ struct LoadReport<'a> {
     from_zero: bool,
     breakpoints: Vec<Turn<'a>>,
     limit: Option<f64>,
+    answer_beyond: Option<f64>,
     last: Option<f64>,
 }
 
@@ -288,6 +289,7 @@ impl<'a> LoadReport<'a> {
             from_zero: path.from_zero,
             breakpoints: path.breakpoints.iter().map(turn).collect(),
             limit: path.limit(),
+            answer_beyond: path.answer_beyond(),
             last: path.factors.last().copied(),
         }
     }
