@@ -53,7 +53,8 @@ pub struct AtRest {
 /// Stopped from outside.
 pub fn at_rest(problem: &ContactProblem, watch: &dyn Watch) -> Result<Option<AtRest>, ConeFailure> {
     let Some(exact) = as_they_are(problem) else { return Ok(None) };
-    let [reached, others] = reached_and_others(&exact.system);
+    let Some(stress) = exact.system.force_form.as_ref().map(|form| &form.self_stress) else { return Ok(None) };
+    let [reached, others] = reached_and_others(&exact.system, stress);
     let Some(mut unknowns) = undeformed(&exact, &reached) else { return Ok(None) };
     let pairs = cone_pairs(&exact);
     if reached.is_empty() || !move_others(&exact, &pairs, &others, &mut unknowns, watch)? {
@@ -67,7 +68,7 @@ pub fn at_rest(problem: &ContactProblem, watch: &dyn Watch) -> Result<Option<AtR
     let opening = |pair: usize| if exact.system.is_forced(pair) { forces[pair].cleaned() } else { unknowns[pair] };
     let is_open = |pair: usize| opening(pair) > 0.0 && !exact.system.pairs[pair].law.is_bilateral();
     let open: Vec<bool> = (0..pairs.len()).map(is_open).collect();
-    let laws = Laws { exact: &exact, pairs: &pairs, reached: &reached, open: &open, start };
+    let laws = Laws { exact: &exact, pairs: &pairs, reached: &reached, open: &open, start, stress };
     let Some((carried, is_least_norm)) = laws.forces() else { return Ok(None) };
     for joint in (0..unknowns.len()).filter(|&joint| exact.system.is_forced(joint)) {
         unknowns[joint] = carried[joint];
@@ -80,10 +81,9 @@ fn joints(system: &ContactSystem, pair: usize) -> impl Iterator<Item = usize> {
 }
 
 /// The pairs with a joint that self-stress reaches, and the others.
-fn reached_and_others(system: &ContactSystem) -> [Vec<usize>; 2] {
-    let Some(form) = &system.force_form else { return [Vec::new(), (0..system.pair_count()).collect()] };
-    let felt = FELT * form.self_stress.amax();
-    let is_reached = |pair: &usize| joints(system, *pair).any(|joint| form.self_stress.row(joint).amax() > felt);
+fn reached_and_others(system: &ContactSystem, stress: &DMatrix<f64>) -> [Vec<usize>; 2] {
+    let felt = FELT * stress.amax();
+    let is_reached = |pair: &usize| joints(system, *pair).any(|joint| stress.row(joint).amax() > felt);
     let (reached, others) = (0..system.pair_count()).partition(is_reached);
     [reached, others]
 }
@@ -178,8 +178,10 @@ struct Laws<'a> {
     reached: &'a [usize],
     /// Of each pair whether it is open.
     open: &'a [bool],
-    /// λ without self-stress.
+    /// λ without self-stress …
     start: DVector<f64>,
+    /// … and the self-stress.
+    stress: &'a DMatrix<f64>,
 }
 
 impl Laws<'_> {
@@ -189,7 +191,6 @@ impl Laws<'_> {
     fn forces(&self) -> Option<(DVector<f64>, bool)> {
         let bounds = self.reached.iter().map(|&pair| self.exact.laws[pair].fixed_bound()).fold(0.0, f64::max);
         let unit = self.start.amax().max(bounds);
-        let stress = &self.exact.system.force_form.as_ref()?.self_stress;
         if unit == 0.0 {
             return Some((self.start.clone(), true));
         }
@@ -213,21 +214,21 @@ impl Laws<'_> {
         let least = if seeks_least { self.least_norm(unit) } else { None };
         let is_least_norm = least.is_some();
         let (amounts, unloaded) = least.unwrap_or((amounts, Vec::new()));
-        let carried = &self.start + stress * DVector::from_fn(stress.ncols(), |column, _| unit * amounts[column]);
+        let amounts = DVector::from_fn(self.stress.ncols(), |column, _| unit * amounts[column]);
+        let carried = &self.start + self.stress * amounts;
         Some((self.without_idle(carried, &unloaded)?, is_least_norm))
     }
 
     /// The same forces with exactly nothing where the laws admit nothing, which the program meets to its tolerance only.
     fn without_idle(&self, mut carried: DVector<f64>, unloaded: &[usize]) -> Option<DVector<f64>> {
-        let stress = &self.exact.system.force_form.as_ref()?.self_stress;
         let idle: Vec<usize> = self.reached.iter().flat_map(|&pair| self.idle_joints(pair, unloaded)).collect();
         if idle.is_empty() {
             return Some(carried);
         }
-        let rows = stress.select_rows(&idle);
+        let rows = self.stress.select_rows(&idle);
         for _ in 0..CORRECTIONS {
             let left = DVector::from_fn(idle.len(), |row, _| -carried[idle[row]]);
-            carried += stress * least_norm(&rows, &left)?;
+            carried += self.stress * least_norm(&rows, &left)?;
         }
         idle.iter().for_each(|&joint| carried[joint] = 0.0);
         Some(carried)
@@ -250,7 +251,7 @@ impl Laws<'_> {
         program.equal(vec![(room, 1.0)], 0.0);
         let rubs = |pair: &&usize| !self.open[**pair] && self.exact.laws[**pair].friction() > 0.0;
         let pressed: Vec<(usize, f64)> =
-            self.reached.iter().filter(rubs).flat_map(|&pair| self.force(pair, 1.0, room - 1)).collect();
+            self.reached.iter().filter(rubs).flat_map(|&pair| self.force(pair, 1.0)).collect();
         let mut costs = vec![0.0; room + 1];
         pressed.iter().for_each(|&(k, a)| costs[k] -= a);
         program.set_costs(costs.iter().copied().enumerate());
@@ -264,28 +265,28 @@ impl Laws<'_> {
     /// The variables of the program: the amounts of the self-stress in this unit of force, then 1 (0 where nothing is
     /// `loaded`), then the room that is left in every law. Pairs that are `unloaded` carry nothing.
     fn program(&self, unit: f64, loaded: f64, unloaded: &[usize]) -> (LinearProgram, usize) {
-        let system = &*self.exact.system;
         let mut program = LinearProgram::default();
-        let count = system.force_form.as_ref().map_or(0, |form| form.self_stress.ncols());
-        let variables: Vec<usize> = (0..count + 2).map(|_| program.variable(0.0)).collect();
-        let (one, room) = (variables[count], variables[count + 1]);
+        for _ in 0..self.stress.ncols() {
+            program.variable(0.0);
+        }
+        let (one, room) = (program.variable(0.0), program.variable(0.0));
         program.equal(vec![(one, 1.0)], loaded);
         program.at_most(vec![(room, 1.0)], 1.0);
         for &i in self.reached {
             let (pair, law) = (&self.pairs[i], &self.exact.laws[i]);
             let idle = self.idle_joints(i, unloaded);
-            idle.iter().for_each(|&joint| program.equal(self.force(joint, unit, one), 0.0));
+            idle.iter().for_each(|&joint| program.equal(self.force(joint, unit), 0.0));
             let is_pressed = !law.is_bilateral() && !idle.contains(&i);
             if is_pressed {
-                let pressed: Vec<(usize, f64)> = self.force(i, unit, one).into_iter().chain([(room, -1.0)]).collect();
+                let pressed: Vec<(usize, f64)> = self.force(i, unit).into_iter().chain([(room, -1.0)]).collect();
                 program.at_least_length(&pressed, &[]);
             }
             let tangents: Vec<Vec<(usize, f64)>> = (pair.tangents.clone().filter(|joint| !idle.contains(joint)))
-                .map(|joint| self.force(joint, unit, one))
+                .map(|joint| self.force(joint, unit))
                 .collect();
             if !tangents.is_empty() {
                 let f = if idle.contains(&i) { 0.0 } else { law.friction() };
-                let pressed = self.force(i, unit, one).into_iter().map(|(k, a)| (k, f * a)).filter(|(_, a)| *a != 0.0);
+                let pressed = self.force(i, unit).into_iter().map(|(k, a)| (k, f * a)).filter(|(_, a)| *a != 0.0);
                 let bound: Vec<(usize, f64)> = pressed.chain([(one, law.fixed_bound() / unit), (room, -1.0)]).collect();
                 program.at_least_length(&bound, &tangents);
             }
@@ -294,35 +295,37 @@ impl Laws<'_> {
     }
 
     /// λ of a joint over the variables.
-    fn force(&self, joint: usize, unit: f64, one: usize) -> Vec<(usize, f64)> {
-        let stress = self.exact.system.force_form.as_ref().map(|form| form.self_stress.row(joint));
-        let amounts = stress.iter().flat_map(|row| row.iter().copied()).enumerate();
+    fn force(&self, joint: usize, unit: f64) -> Vec<(usize, f64)> {
+        let stress = self.stress.row(joint);
+        let one = self.stress.ncols();
+        let amounts = stress.iter().copied().enumerate();
         amounts.chain([(one, self.start[joint] / unit)]).filter(|(_, a)| *a != 0.0).collect()
     }
 
     /// The forces of least norm that leave some room in the laws, and the pairs that they do not load: those that would be
     /// loaded by hardly more than this room.
     fn least_norm(&self, unit: f64) -> Option<(Vec<f64>, Vec<usize>)> {
-        let system = &*self.exact.system;
-        let all: Vec<usize> = self.reached.iter().flat_map(|&pair| joints(system, pair)).collect();
-        let solve = |unloaded: &[usize]| {
-            let (mut program, room) = self.program(unit, 1.0, unloaded);
-            let length = program.variable(0.0);
-            program.set_costs([(length, 1.0)]);
-            program.equal(vec![(room, 1.0)], ROOM);
-            let parts: Vec<Vec<(usize, f64)>> = all.iter().map(|&joint| self.force(joint, unit, room - 1)).collect();
-            program.at_least_length(&[(length, 1.0)], &parts);
-            match program.solve(BUDGET) {
-                Outcome::Optimum(found) => Some(found.x),
-                _ => None,
-            }
-        };
-        let found = solve(&[])?;
-        let carried =
-            |joint: usize| self.force(joint, unit, found.len() - 3).iter().map(|(k, a)| a * found[*k]).sum::<f64>();
-        let is_idle = |pair: &usize| !system.pairs[*pair].law.is_bilateral() && carried(*pair) < 2.0 * ROOM;
+        let found = self.shortest(unit, &[])?;
+        let carried = |joint: usize| self.force(joint, unit).iter().map(|(k, a)| a * found[*k]).sum::<f64>();
+        let is_idle = |pair: &usize| !self.exact.system.pairs[*pair].law.is_bilateral() && carried(*pair) < 2.0 * ROOM;
         let idle: Vec<usize> = self.reached.iter().copied().filter(is_idle).collect();
-        if idle.is_empty() { None } else { solve(&idle) }.map(|found| (found, idle)).or(Some((found, Vec::new())))
+        let without = if idle.is_empty() { None } else { self.shortest(unit, &idle) };
+        Some(without.map_or((found, Vec::new()), |without| (without, idle)))
+    }
+
+    /// The same with these pairs unloaded.
+    fn shortest(&self, unit: f64, unloaded: &[usize]) -> Option<Vec<f64>> {
+        let (mut program, room) = self.program(unit, 1.0, unloaded);
+        let length = program.variable(0.0);
+        program.set_costs([(length, 1.0)]);
+        program.equal(vec![(room, 1.0)], ROOM);
+        let all = self.reached.iter().flat_map(|&pair| joints(&self.exact.system, pair));
+        let parts: Vec<Vec<(usize, f64)>> = all.map(|joint| self.force(joint, unit)).collect();
+        program.at_least_length(&[(length, 1.0)], &parts);
+        match program.solve(BUDGET) {
+            Outcome::Optimum(found) => Some(found.x),
+            _ => None,
+        }
     }
 }
 

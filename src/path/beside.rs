@@ -62,6 +62,11 @@ pub(super) fn size(factor: f64, present: f64) -> f64 {
     [factor.abs(), present.abs()].into_iter().find(|size| *size > 0.0).unwrap_or(1.0)
 }
 
+/// What is said of a path over a load beyond whose end there is an answer; `further` is the command that looks for more.
+pub(super) fn no_limit(end: &str, further: &str) -> String {
+    format!("{end}: not the largest load that can be carried; {further} looks further")
+}
+
 /// The command that looks for answers from a value on, as far as `reach`.
 pub(super) fn search(name: &str, from: f64, reach: f64) -> String {
     let to = from + reach;

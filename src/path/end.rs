@@ -14,8 +14,8 @@ pub enum PathEnd {
     Turning,
     /// At the limit load.
     Limit(RayDirection),
-    /// At a load beyond which nothing resists the motion in which the path ends, while a run of its own finds an answer
-    /// just beyond, at this value.
+    /// Where nothing resists the motion in which the path ends, or where no answer near the one followed leads on, while a
+    /// run of its own finds an answer just beyond, at this value.
     AnswerBeyond(f64),
     /// At a value beyond which a collapse on Coulomb's cone is certified.
     Collapse(Box<Ray>),
@@ -28,6 +28,14 @@ pub enum PathEnd {
 }
 
 impl PathEnd {
+    /// The value just beyond at which there is an answer all the same.
+    pub fn answer_beyond(&self) -> Option<f64> {
+        match self {
+            PathEnd::AnswerBeyond(value) => Some(*value),
+            _ => None,
+        }
+    }
+
     /// In a sentence; `name` is what was followed, `at` where the path ended.
     pub fn sentence(&self, name: &str, at: f64) -> String {
         let end = nine_digits(at);
@@ -47,11 +55,9 @@ impl PathEnd {
                     ray.mode
                 )
             }
-            PathEnd::AnswerBeyond(beyond) => format!(
-                "the path ends at {name} = {end}, but an answer exists at {name} = {}: not the largest load that can be \
-                 carried",
-                nine_digits(*beyond)
-            ),
+            PathEnd::AnswerBeyond(beyond) => {
+                format!("the path ends at {name} = {end}, but an answer exists at {name} = {}", nine_digits(*beyond))
+            }
             PathEnd::Unbounded => format!("beyond {name} = {at} nothing changes any more, however large the load"),
             PathEnd::Returned => format!("the path came back to {name} = {at} through turning points"),
             PathEnd::NoAnswer => {

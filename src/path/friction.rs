@@ -16,7 +16,7 @@ use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
 use super::rate::{place_beside_laws, problem_rates, rate_lcp};
 use super::standstill::{Rounding, Standstill, further};
-use super::start::{PathError, cold, final_basis, plane_system, state_of};
+use super::start::{PathError, cold, final_basis, is_off_paths, plane_system, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
 use crate::contact::lcp::contact_lcp;
@@ -31,7 +31,7 @@ use crate::lcp::parametric::{End, Parametric, Reach};
 use crate::model::jet::Dependence;
 use crate::model::pair::Law;
 use crate::model::parameter::{Number, ParameterValues};
-use crate::model::rules::Covering;
+use crate::model::rules::{Covering, Rules};
 use crate::solve::problem::{contact_problem, factors};
 use crate::solve::{Case, Prepared, Solved};
 
@@ -175,8 +175,11 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, to: f64) -> Re
         Some(basis) => basis,
         None => {
             let found = cold(&follower.problem_at(start), case.watch)?;
-            let how = found.how().to_owned();
-            found.basis.ok_or(PathError::NoStart { name: name.to_owned(), at: start, how })?
+            let (how, name) = (found.how().to_owned(), name.to_owned());
+            found.basis.ok_or_else(|| match solved.is_some_and(is_off_paths) {
+                true => PathError::OffPaths { name, at: start },
+                false => PathError::NoStart { name, at: start, how },
+            })?
         }
     };
     follower.follow(&mut path, basis, to)?;
@@ -286,7 +289,7 @@ impl Follower<'_> {
                 return Ok(());
             }
             let Some(next) = self.beyond(&reached, &basis, to)? else {
-                path.end = PathEnd::NoAnswer;
+                path.end = self.end_beside(self.beside(reached.value, to))?;
                 return Ok(());
             };
             if standstill.is_met_again(std::mem::replace(&mut basis, next.basis), from, reached.value, &basis) {
@@ -362,6 +365,13 @@ impl Follower<'_> {
         // The interval starts at the breakpoint where the new scheme holds there too.
         let place = self.place(end.value, &next).filter(holds).unwrap_or(place);
         Ok(Some(Onward { basis: next, place, jump }))
+    }
+
+    /// The end of a path beyond which no pivots lead to an answer: whether a run of its own, with all its retries, finds one.
+    fn end_beside(&self, beside: f64) -> Result<PathEnd, PathError> {
+        let there = self.case.at(self.name, beside)?;
+        let found = there.case(self.case).under(Rules::default()).solve_pairs()?;
+        Ok(if found.answer.is_answer() { PathEnd::AnswerBeyond(beside) } else { PathEnd::NoAnswer })
     }
 
     /// A value a little further on.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
-use super::beside::{BESIDE, Beside, search, size};
+use super::beside::{BESIDE, Beside, no_limit, search, size};
 use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
 use super::load_parameter::LoadParameter;
@@ -206,15 +206,6 @@ impl LoadPath {
         last.map(|factor| if factor.abs() <= NOISE * self.parameter.present.abs() { 0.0 } else { factor })
     }
 
-    /// The factor just beyond the end at which there is an answer all the same, where nothing resists the motion in which
-    /// the path ends.
-    pub fn answer_beyond(&self) -> Option<f64> {
-        match self.end {
-            PathEnd::AnswerBeyond(factor) => Some(factor),
-            _ => None,
-        }
-    }
-
     /// A run of its own at a factor.
     pub(super) fn run_at(&self, case: Case<'_>, factor: f64) -> Result<Beside, PathError> {
         Beside::run(&self.parameter, self.moves_loads(), case, factor)
@@ -360,8 +351,8 @@ impl LoadPath {
     pub fn end_sentence(&self) -> String {
         let name = &self.parameter.name;
         let sentence = self.end.sentence(name, self.factors.last().copied().unwrap_or(self.start));
-        match self.answer_beyond() {
-            Some(beyond) => format!("{sentence}; {} looks further", self.search(beyond)),
+        match self.end.answer_beyond() {
+            Some(beyond) => no_limit(&sentence, &self.search(beyond)),
             None => sentence,
         }
     }

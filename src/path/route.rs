@@ -67,17 +67,17 @@ pub struct Route<'a> {
 }
 
 impl<'a> Route<'a> {
-    /// Follows the answer over `range`. `None` where no path leads over this parameter.
+    /// Follows the answer over `range`. `None` where no path leads over this parameter, or where one ends with answers beyond.
     ///
     /// # Errors
     /// No answer at either end or at the present value; see [`PathError`].
     pub fn new(case: Case<'a>, name: &str, range: [f64; 2]) -> Result<Option<Route<'a>>, PathError> {
-        Route::from_start(case, name, range, false, &|case: Case<'_>| {
-            Ok(case.solve_pairs()?.if_answer(case.rules.cone))
-        })
+        let solve: Start<'_> = &|case: Case<'_>| Ok(case.solve_pairs()?.if_answer(case.rules.cone));
+        let route = Route::from_start(case, name, range, false, solve)?;
+        Ok(route.filter(|route| route.legs.iter().all(|leg| leg.way.end().answer_beyond().is_none())))
     }
 
-    /// The same from an answer that `solve` finds, looking for a start at the upper end first where that is wanted: where there
+    /// The same, to the end of a path, from an answer that `solve` finds, looking for a start at the upper end first where that is wanted: where there
     /// are several answers it may be another one.
     ///
     /// # Errors
@@ -115,11 +115,13 @@ impl<'a> Route<'a> {
             let there = Arc::new(there);
             for target in targets {
                 match Way::follow(there.case(case), &solved, name, target) {
-                    // Not from the answer at the start, or not to the end of the answers.
-                    Ok(Way::Load(path)) if path.from_zero || path.answer_beyond().is_some() => {
+                    // A path, but not from the answer at the start.
+                    Ok(way) if way.is_from_zero() => {
                         off_paths = true;
-                        route.legs.clear();
-                        route.stretches.clear();
+                        continue 'starts;
+                    }
+                    Err(PathError::OffPaths { .. }) => {
+                        off_paths = true;
                         continue 'starts;
                     }
                     Ok(way) => route.take(Leg { way, there: Arc::clone(&there) }),

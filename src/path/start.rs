@@ -86,6 +86,16 @@ pub enum PathError {
         /// `in a ray`, …
         how: String,
     },
+    /// An answer to start from that no path leads on from.
+    #[error(
+        "no path leads on from the answer at {name} = {at}; `find {name} A..B where …` looks at answers of their own"
+    )]
+    OffPaths {
+        /// What is followed.
+        name: String,
+        /// Its value there.
+        at: f64,
+    },
     /// A scenario without what is asked for.
     #[error("{0}")]
     Missing(String),

@@ -45,6 +45,15 @@ impl Way {
         })
     }
 
+    /// Whether it starts from 0 in place of the answer it was to start from: followed over a load.
+    pub fn is_from_zero(&self) -> bool {
+        match self {
+            Way::Load(path) => path.from_zero,
+            Way::Friction(_) => false,
+            Way::OnCone(path) => path.from_zero,
+        }
+    }
+
     /// Why it ends.
     pub fn end(&self) -> &PathEnd {
         match self {

@@ -122,7 +122,10 @@ pub fn write_on_cone(out: &mut dyn Write, path: &ConePath, units: &Units, style:
     let way = FromStart {
         name: &path.name,
         start: path.start,
-        from_zero: path.from_zero.then_some("no answer on Coulomb's cone was found at the present load"),
+        from_zero: path.from_zero.then_some(match path.is_present_off_paths {
+            true => "no steps lead on from the answer at the present load",
+            false => "no answer on Coulomb's cone was found at the present load",
+        }),
         breakpoints: &path.breakpoints,
         pairs_at: &|place| &path.places[place].pairs,
         jump: " (a jump to another answer)",

@@ -27,7 +27,7 @@ pub(super) fn of_path(case: Case<'_>, path: LoadPath, negative: bool) -> Result<
         safety,
         collapse: None,
         confirmed: false,
-        beyond: path.answer_beyond(),
+        beyond: path.end.answer_beyond(),
         bracket: None,
         proof: None,
         polygon_only: false,

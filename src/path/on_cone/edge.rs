@@ -96,7 +96,8 @@ impl Path<'_> {
         let built = self.case.prepared.built();
         let motions = FreeMotions::new(&problem.system, built);
         let Some(certificate) = certify(&problem, &motions).certificate else {
-            return Ok(Beyond::End(PathEnd::NoAnswer, false));
+            let end = if self.is_answer(value)? { PathEnd::AnswerBeyond(value) } else { PathEnd::NoAnswer };
+            return Ok(Beyond::End(end, false));
         };
         let for_good = !self.over.is_friction() && self.goes_on_to(aim, &certificate, &motions)?;
         let mut report = RayReport::of_certificate(&problem, certificate);

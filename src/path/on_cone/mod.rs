@@ -15,6 +15,7 @@ mod walk;
 
 use self::over::Path;
 use self::stand::displacements;
+use super::beside::{no_limit, search};
 use super::change::Breakpoint;
 use super::cone_step::Stepper;
 use super::end::PathEnd;
@@ -42,8 +43,10 @@ pub struct ConePath {
     pub over: Over,
     /// Where it starts.
     pub start: f64,
-    /// Whether it starts from factor 0 because the present state is no answer.
+    /// Whether it starts from factor 0 because the present state is no answer, or one that no path starts from …
     pub from_zero: bool,
+    /// … and whether it is the latter.
+    pub is_present_off_paths: bool,
     /// The places, in order.
     pub places: Vec<Place>,
     /// The breakpoints: each at the place before the change.
@@ -67,7 +70,13 @@ impl ConePath {
 
     /// How it ended, in a sentence.
     pub fn end_sentence(&self) -> String {
-        self.end.sentence(&self.name, self.last())
+        let sentence = self.end.sentence(&self.name, self.last());
+        match self.end.answer_beyond() {
+            Some(beyond) if !self.over.is_friction() => {
+                no_limit(&sentence, &search(&self.name, beyond, beyond - self.start))
+            }
+            _ => sentence,
+        }
     }
 
     /// Indices of the places in each scheme, in order.
@@ -142,9 +151,18 @@ pub fn trace_load(
     }
     start::finite_target(name, reach.to)?;
     let shown = solved.filter(|solved| solved.stands(true));
-    let start = if shown.is_some() { parameter.present } else { 0.0 };
+    let present = parameter.present;
     let over = Over::Load(parameter, grown);
-    Path::new(case, name, &over).follow(shown, start, reach)
+    let path = Path::new(case, name, &over);
+    if shown.is_none() {
+        return path.follow(None, 0.0, reach);
+    }
+    match path.follow(shown, present, reach) {
+        Err(PathError::OffPaths { .. }) if present != 0.0 => {
+            Ok(ConePath { is_present_off_paths: true, ..path.follow(None, 0.0, reach)? })
+        }
+        followed => followed,
+    }
 }
 
 /// Follows the answer over a friction parameter from its present value.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::contact::problem::ContactProblem;
 use crate::model::parameter::ParameterValues;
+use crate::model::rules::Rules;
 use crate::path::load_parameter::LoadParameter;
 use crate::path::start::PathError;
 use crate::solve::problem::{contact_problem, factors};
@@ -76,6 +77,17 @@ impl<'a> Path<'a> {
         let factors = self.over.factors(self.case.prepared, &values, value);
         let system = self.case.prepared.system().ok_or(PathError::Plain("trace"))?;
         Ok(contact_problem(system, &factors, &values).under(self.case.rules))
+    }
+
+    /// Whether a run of its own, with all its retries, finds an answer on the cone at a value.
+    ///
+    /// # Errors
+    /// Stopped from outside.
+    pub(super) fn is_answer(&self, value: f64) -> Result<bool, PathError> {
+        let values = self.values(value);
+        let prepared = self.case.prepared.with_factors(&self.over.factors(self.case.prepared, &values, value));
+        let there = Case { prepared: &prepared, values: &values, ..self.case };
+        Ok(there.under(Rules::default()).solve_pairs()?.stands(true))
     }
 
     /// The factors that are recorded for a place; none on a path over friction.

@@ -55,6 +55,7 @@ impl Path<'_> {
             over: self.over.clone(),
             start,
             from_zero: shown.is_none() && !self.over.is_friction(),
+            is_present_off_paths: false,
             places: vec![here.place.clone()],
             breakpoints: Vec::new(),
             end: PathEnd::Target,
@@ -77,6 +78,8 @@ impl Path<'_> {
         let none = DVector::zeros(problem.system.joint_count());
         match stepper.anywhere(problem, &none, None)? {
             Ok(step) => self.stand(start, step),
+            // An answer that no steps lead to is none that they lead on from.
+            Err(_) if shown.is_some() => Err(PathError::OffPaths { name: self.name.to_owned(), at: start }),
             Err(_) => Err(PathError::NoStart {
                 name: self.name.to_owned(),
                 at: start,

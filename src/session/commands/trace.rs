@@ -179,6 +179,7 @@ struct ConeReport<'a> {
     from_zero: bool,
     breakpoints: Vec<ConeTurn<'a>>,
     limit: Option<f64>,
+    answer_beyond: Option<f64>,
     last: f64,
 }
 
@@ -209,6 +210,7 @@ impl<'a> ConeReport<'a> {
             from_zero: path.from_zero,
             breakpoints: path.breakpoints.iter().map(turn).collect(),
             limit: path.limit(),
+            answer_beyond: path.end.answer_beyond(),
             last: path.last(),
         }
     }
@@ -289,7 +291,7 @@ impl<'a> LoadReport<'a> {
             from_zero: path.from_zero,
             breakpoints: path.breakpoints.iter().map(turn).collect(),
             limit: path.limit(),
-            answer_beyond: path.answer_beyond(),
+            answer_beyond: path.end.answer_beyond(),
             last: path.factors.last().copied(),
         }
     }
