@@ -76,5 +76,11 @@ pub(super) fn search(name: &str, from: f64, reach: f64) -> String {
 
 /// With nine significant digits, which tell apart what lies [`BESIDE`] from one another.
 pub(super) fn nine_digits(value: f64) -> f64 {
-    format!("{value:.8e}").parse().unwrap_or(value)
+    digits(value, 9)
+}
+
+/// With so many significant digits.
+pub(super) fn digits(value: f64, count: usize) -> f64 {
+    let after_the_first = count - 1;
+    format!("{value:.after_the_first$e}").parse().unwrap_or(value)
 }

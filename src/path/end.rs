@@ -1,6 +1,6 @@
 //! Why a path ends.
 
-use super::beside::nine_digits;
+use super::beside::{digits, nine_digits};
 use crate::answer::record::Ray;
 use crate::lcp::outcome::RayDirection;
 use crate::text::words::short;
@@ -56,7 +56,10 @@ impl PathEnd {
                 )
             }
             PathEnd::AnswerBeyond(beyond) => {
-                format!("the path ends at {name} = {end}, but an answer exists at {name} = {}", nine_digits(*beyond))
+                format!(
+                    "the path ends at {name} = {end}, but just beyond, at {name} = {}, an answer exists",
+                    digits(*beyond, 12)
+                )
             }
             PathEnd::Unbounded => format!("beyond {name} = {at} nothing changes any more, however large the load"),
             PathEnd::Returned => format!("the path came back to {name} = {at} through turning points"),

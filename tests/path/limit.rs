@@ -51,7 +51,7 @@ fn the_end_of_a_path_with_answers_beyond_is_no_limit() {
         let end = found["end"].as_str().expect("a sentence");
         assert!(end.contains("the path ends at h = 0.5,") && end.contains("not the largest load that can be carried"));
         let shown = text(&mut pairs, command);
-        assert!(shown.contains("an answer exists") && !shown.contains("limit load"), "{shown}");
+        assert!(shown.contains("answer exists") && !shown.contains("limit load"), "{shown}");
         // The command that the sentence names is one, and finds the rest of the answers.
         let further = end.split('`').nth(1).expect("a command").to_owned();
         assert!(text(&mut pairs, &further).contains("h = 0.55 "), "{further}");
@@ -60,7 +60,7 @@ fn the_end_of_a_path_with_answers_beyond_is_no_limit() {
     assert!(found["confirmed"] == false && found["safety"].is_null() && found["collapse"].is_null(), "{found}");
     for command in ["show limit h", "summary"] {
         let shown = text(&mut pairs, command).split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(shown.contains("an answer exists") || shown.contains("with answers beyond"), "{command}: {shown}");
+        assert!(shown.contains("answer exists") || shown.contains("with answers beyond"), "{command}: {shown}");
         assert!(!shown.contains("confirmed"), "{command}: {shown}");
     }
     for (value, outcome) in [(0.5001, "answer"), (0.5499, "answer"), (0.5501, "ray")] {
