@@ -308,3 +308,48 @@ fn plane_and_space(rng: &mut ChaCha8Rng, m: usize, [own, friction]: [f64; 2]) ->
         Case::json(json!({ "contact_system": of }))
     })
 }
+
+/// A rigid body on four feet of one friction, pushed and turned: a path knows one self-stress of its feet and ends before the
+/// answers do. What it names beyond its end is an answer: forces on the cone that balance weight, push and moment, at rest.
+#[test]
+fn a_path_that_ends_with_answers_beyond_says_so() {
+    let (friction, feet) = (0.25, [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]]);
+    let mut nodes = json!({ "G": [1.6, 1.2, 1.0], "H": [3.5, 2.9, 0.5] });
+    let mut contacts = Vec::new();
+    for (i, [x, y]) in feet.iter().enumerate() {
+        nodes[format!("f{i}")] = json!([x, y, 0.0]);
+        contacts
+            .push(json!({ "id": format!("c{i}"), "node": format!("f{i}"), "against": "ground", "normal": [0, 0, 1],
+            "friction": friction }));
+    }
+    let case = Case::json(json!({
+        "dimension": 3, "parameters": { "P": 2.7 }, "nodes": nodes, "contacts": contacts,
+        "rigid": [{ "id": "b", "nodes": ["f0", "f1", "f2", "f3", "G", "H"], "about": "G" }],
+        "loads": {
+            "w": { "items": [{ "point": { "at": "G", "force": [0, 0, -12] } }] },
+            "push": { "factor": "P", "items": [{ "point": { "at": "H", "force": [1, 0.5, -0.2], "moment": [0, 0, 0.4] } }] }
+        }
+    }));
+    let path = load(&case, "push", UP);
+    let beyond = path.end.answer_beyond().unwrap_or_else(|| panic!("{:?}", path.end));
+    assert!(path.limit().is_none() && path.end_sentence().contains("not the largest load that can be carried"));
+    assert!(beyond > path.last() && beyond < path.last() * (1.0 + 1e-6), "{beyond}");
+    for push in [beyond, 2.78] {
+        let answer = case.solve(&[("P", push)]);
+        assert!(answer.is_answer() && answer.polygon.is_some_and(|polygon| polygon.cone), "{answer:?}");
+        // Forces along x, y, z and moments about the axes through f0.
+        let mut left = [push, 0.5 * push, -12.0 - 0.2 * push, 0.0, 0.0, 0.4 * push];
+        left[3] += -12.0 * 1.2 + push * (2.9 * -0.2 - 0.5 * 0.5);
+        left[4] += 12.0 * 1.6 + push * (0.5 + 3.5 * 0.2);
+        left[5] += push * (3.5 * 0.5 - 2.9);
+        for (pair, [x, y]) in answer.pairs.iter().zip(feet) {
+            let (along, n) = (pair.friction(), pair.x_n);
+            let [f_x, f_y] = [along[0], along[1]];
+            for (sum, part) in left.iter_mut().zip([f_x, f_y, n, y * n, -x * n, x * f_y - y * f_x]) {
+                *sum += part;
+            }
+            assert!(n >= 0.0 && f_x.hypot(f_y) <= friction * n * (1.0 + 1e-12) && pair.slip() == [0.0; 2], "{pair:?}");
+        }
+        left.iter().for_each(|sum| near("in balance", *sum, 0.0, 1e-10, 12.0));
+    }
+}

@@ -71,10 +71,12 @@ impl ConePath {
     /// How it ended, in a sentence.
     pub fn end_sentence(&self) -> String {
         let sentence = self.end.sentence(&self.name, self.last());
-        match self.end.answer_beyond() {
-            Some(beyond) if !self.over.is_friction() => {
+        match self.end {
+            PathEnd::AnswerBeyond(beyond) if !self.over.is_friction() => {
                 no_limit(&sentence, &search(&self.name, beyond, beyond - self.start))
             }
+            // The friction polygon may still have one.
+            PathEnd::NoAnswer => format!("{sentence} on Coulomb's cone"),
             _ => sentence,
         }
     }
