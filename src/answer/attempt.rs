@@ -49,7 +49,7 @@ pub enum AttemptEngine {
 impl AttemptEngine {
     /// Whether what it finds comes without pivots of the problem itself.
     pub fn is_without_pivots(self) -> bool {
-        !matches!(self, AttemptEngine::Lemke(_) | AttemptEngine::LoadPath | AttemptEngine::Descent)
+        !matches!(self, AttemptEngine::Lemke(_) | AttemptEngine::LoadPath)
     }
 }
 
