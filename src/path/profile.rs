@@ -12,6 +12,9 @@ const STRAIGHT: f64 = 1e-10;
 const HALVINGS: usize = 12;
 /// A difference of values below this share of them is rounding.
 pub const ROUNDING: f64 = 1e-12;
+/// How far from an end, as a share of the way to the next point, a turn close to it shows. What falls and rises again
+/// within half of the least differs from the end by its square in a smooth function: by rounding.
+const BESIDE: [f64; 4] = [0.25, 1e-2, 1e-4, 1e-6];
 
 /// A quantity over one stretch.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,21 +110,52 @@ fn refine(
 
 /// Puts the places between where the function turns among the points.
 fn with_extremes(value: &dyn Fn(f64) -> Option<f64>, points: &mut Vec<(f64, f64)>) {
+    let size = points.iter().fold(0.0, |size: f64, (_, f)| size.max(f.abs()));
     let mut turns = Vec::new();
+    let mut turn = |sign: f64, three: [(f64, f64); 3]| {
+        let from_above = |x: f64| Some(sign * value(x)?);
+        let x = vertex(value, three, size).or_else(|| summit(&from_above, three[0].0, three[2].0));
+        turns.extend(x.and_then(|x| Some((x, value(x)?))));
+    };
     for three in points.windows(3) {
         let [a, b, c] = [three[0], three[1], three[2]];
-        let sign = if b.1 > a.1 && b.1 >= c.1 {
-            1.0
+        if b.1 > a.1 && b.1 >= c.1 {
+            turn(1.0, [a, b, c]);
         } else if b.1 < a.1 && b.1 <= c.1 {
-            -1.0
-        } else {
-            continue;
-        };
-        turns.extend(summit(&|x| Some(sign * value(x)?), a.0, c.0).map(|x| (x, value(x).unwrap_or(b.1))));
+            turn(-1.0, [a, b, c]);
+        }
+    }
+    // No three points show a turn between an end and its neighbour: there it leaves the end away from the neighbour.
+    if let [first, second, .., last_but_one, last] = points[..] {
+        for [end, inner] in [[first, second], [last, last_but_one]] {
+            let sign = if inner.1 >= end.1 { -1.0 } else { 1.0 };
+            let beyond = |share: &f64| {
+                let at = end.0 + share * (inner.0 - end.0);
+                value(at).map(|f| (at, f)).filter(|(_, f)| sign * (f - end.1) > ROUNDING * size)
+            };
+            if let Some(beside) = BESIDE.iter().find_map(beyond) {
+                let mut three = [end, beside, inner];
+                three.sort_by(|a, b| a.0.total_cmp(&b.0));
+                turn(sign, three);
+            }
+        }
     }
     points.extend(turns);
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points.dedup_by(|a, b| a.0 == b.0);
+}
+
+/// Where the parabola through three points turns between the outer two, if it is the function: it tells the values at
+/// the turn and at a place elsewhere to rounding.
+fn vertex(value: &dyn Fn(f64) -> Option<f64>, [a, b, c]: [(f64, f64); 3], size: f64) -> Option<f64> {
+    let first = (b.1 - a.1) / (b.0 - a.0);
+    let second = ((c.1 - b.1) / (c.0 - b.0) - first) / (c.0 - a.0);
+    let parabola = |x: f64| a.1 + (x - a.0) * (first + (x - b.0) * second);
+    let at = 0.5 * (a.0 + b.0 - first / second);
+    let inside = a.0 < at && at < c.0;
+    let elsewhere = 0.5 * (at + if at - a.0 > c.0 - at { a.0 } else { c.0 });
+    let meets = |x: f64| value(x).is_some_and(|f| (f - parabola(x)).abs() <= ROUNDING * size);
+    (inside && meets(at) && meets(elsewhere)).then_some(at)
 }
 
 /// The place of the largest value between two, by the golden section.

@@ -349,3 +349,67 @@ fn wrong_questions_are_refused_in_words() {
         assert!(error.contains(part), "{command}: {error}");
     }
 }
+
+/// A beam of span 4 on a pin and a pressed support, EI = 20000: forces 10 P and 10 (3 − P) at its quarters, where the
+/// flexibilities are 3/4, 7/12 and 3/4 over EI, store U = (P²/3 − P + 27/4)/400, which is least at P = 3/2.
+#[test]
+fn a_parabola_that_turns_close_to_the_end_of_a_stretch_is_searched_and_sampled() {
+    let text = r#"{ "format": "stickslip/1", "title": "bent", "parameters": { "P": 1 },
+        "materials": { "m": { "E": 2e8, "nu": 0.3 } }, "sections": { "s": { "area": 0.01, "inertia": 1e-4 } },
+        "nodes": { "A": [0, 0], "B": [1, 0], "C": [3, 0], "D": [4, 0] },
+        "bars": [ { "id": "AB", "nodes": ["A", "B"], "material": "m", "section": "s" },
+          { "id": "BC", "nodes": ["B", "C"], "material": "m", "section": "s" },
+          { "id": "CD", "nodes": ["C", "D"], "material": "m", "section": "s" } ],
+        "supports": [ { "at": "A", "fixed": ["x", "y"] } ],
+        "contacts": [ { "id": "c", "node": "D", "against": "ground", "normal": [0, 1] } ],
+        "loads": { "w": { "items": [ { "point": { "at": "D", "force": [0, -1e5] } } ] },
+          "p": { "factor": "P", "items": [ { "point": { "at": "B", "force": [0, -10] } } ] },
+          "q": { "factor": "3 - P", "items": [ { "point": { "at": "C", "force": [0, -10] } } ] } } }"#;
+    let mut session = session(load_text("bent", text, None).unwrap_or_else(|problems| panic!("{problems}")));
+    let found = report(&mut session, "envelope energy over P 0..30").unwrap();
+    near(&found["envelope"][0]["least"]["value"], 6.0 / 400.0, 1e-12);
+    near(&found["envelope"][0]["least"]["at"]["P"], 1.5, 1e-9);
+    let found = report(&mut session, "find P 0..30 where energy < 0.01625").unwrap();
+    // P²/3 − P + 1/4 = 0.
+    let half = 1.5 * (2.0_f64 / 3.0).sqrt();
+    near(&found["holds"][0][0], 1.5 - half, 1e-9);
+    near(&found["holds"][0][1], 1.5 + half, 1e-9);
+    // Nearer to the lower end, and to the upper one.
+    for (range, from) in [("1.499..90", 1.499), ("-90..1.51", 1.51)] {
+        let found = report(&mut session, &format!("envelope energy over P {range}")).unwrap();
+        near(&found["envelope"][0]["least"]["at"]["P"], 1.5, 1e-6);
+        assert!(number(&found["envelope"][0]["least"]["at"]["P"]) != from, "{found}");
+    }
+    // U < u for |P − 3/2| < r, u = (r²/3 + 6)/400: half of 0..30 lies below r = 13.5.
+    let found = report(&mut session, "sample P=uniform(0,30) of energy").unwrap();
+    let spread = &found["quantities"][0];
+    near(&spread["mean"], (100.0 - 15.0 + 6.75) / 400.0, 1e-10);
+    let median = spread["quantiles"].as_array().unwrap().iter().find(|quantile| quantile[0] == 0.5);
+    near(&median.unwrap_or_else(|| panic!("{found}"))[1], (13.5 * 13.5 / 3.0 + 6.0) / 400.0, 1e-10);
+}
+
+/// A beam of span 4 under 10 per length with moments P and 3 P at its ends, M = P at the first and −3 P at the second: the
+/// largest M stands where Q = 20 − P − 10 s is 0 and is P + (20 − P)²/20, from P = 20 on it is that at the end.
+#[test]
+fn the_largest_moment_along_a_bar_is_searched_where_its_place_wanders() {
+    let text = r#"{ "format": "stickslip/1", "title": "wandering", "parameters": { "P": 1 },
+        "materials": { "m": { "E": 2e8, "nu": 0.3 } }, "sections": { "s": { "area": 0.01, "inertia": 1e-4 } },
+        "nodes": { "A": [0, 0], "B": [4, 0] },
+        "bars": [ { "id": "b", "nodes": ["A", "B"], "material": "m", "section": "s" } ],
+        "supports": [ { "at": "A", "fixed": ["x", "y"] } ],
+        "contacts": [ { "id": "c", "node": "B", "against": "ground", "normal": [0, 1] } ],
+        "loads": { "w": { "items": [ { "point": { "at": "B", "force": [0, -1e5] } },
+            { "line": { "bar": "b", "value": [0, -10] } } ] },
+          "p": { "factor": "P", "items": [ { "point": { "at": "A", "force": [0, 0], "moment": -1 } },
+            { "point": { "at": "B", "force": [0, 0], "moment": -3 } } ] } } }"#;
+    let mut session = session(load_text("wandering", text, None).unwrap_or_else(|problems| panic!("{problems}")));
+    let found = report(&mut session, "envelope max M b over P 0..200").unwrap();
+    assert_eq!(found["exact"], true, "{found}");
+    near(&found["envelope"][0]["least"]["value"], 15.0, 1e-9);
+    near(&found["envelope"][0]["least"]["at"]["P"], 10.0, 1e-5);
+    near(&found["envelope"][0]["largest"]["value"], 200.0, 1e-9);
+    let found = report(&mut session, "find P 0..200 where max M b < 16").unwrap();
+    let half = 10.0 * 0.2_f64.sqrt();
+    near(&found["holds"][0][0], 10.0 - half, 1e-8);
+    near(&found["holds"][0][1], 10.0 + half, 1e-8);
+}

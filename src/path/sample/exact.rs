@@ -164,6 +164,8 @@ pub fn of_two(case: Case<'_>, variables: [&Variable; 2]) -> Result<Option<Exact>
 struct Slope<'a> {
     piece: &'a Piece,
     ends: [(f64, f64); 2],
+    /// Whether it is a straight line.
+    straight: bool,
 }
 
 /// A quantity over an exact path.
@@ -193,7 +195,9 @@ fn spread(route: &Route<'_>, variable: &Variable, quantity: &Quantity) -> Spread
                 }
             }
             Shape::Curve(points) => {
-                slopes.extend(points.windows(2).map(|two| Slope { piece, ends: [two[0], two[1]] }));
+                // Only of a straight line no point is noted between the ends.
+                let straight = points.len() == 2;
+                slopes.extend(points.windows(2).map(|two| Slope { piece, ends: [two[0], two[1]], straight }));
             }
         }
     }
@@ -215,7 +219,7 @@ impl Profile<'_> {
     fn value(&self, slope: &Slope<'_>, at: f64) -> f64 {
         let [(a, f), (b, g)] = slope.ends;
         let straight = f + (at - a) / (b - a) * (g - f);
-        if self.route.is_straight() {
+        if slope.straight {
             return straight;
         }
         number(self.route, &slope.piece.stretch, at, self.quantity).unwrap_or(straight)
@@ -233,7 +237,7 @@ impl Profile<'_> {
                 return 0.0;
             }
             let off = |at: f64| Some(self.value(slope, at) - value);
-            let at = if self.route.is_straight() {
+            let at = if slope.straight {
                 a + (value - f) / (g - f) * (b - a)
             } else {
                 zero(&off, (a, f - value), (b, g - value))
