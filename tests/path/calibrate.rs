@@ -245,3 +245,19 @@ fn measurements_in_a_file_are_judged_where_they_stand() {
         assert!(problems.contains(part), "{measured}: {problems}");
     }
 }
+
+/// The portal, 240 heavy, slides under its wind of 30 below f = 30/240 = 1/8: there the path ends, and a friction that the
+/// measurements would have lower stands there; what no friction changes leaves all of them from there on.
+#[test]
+fn an_end_of_the_range_without_an_answer_does_not_end_the_search() {
+    let mut session = session(embedded::load("portal").expect("embedded"));
+    for range in ["", "0..1", "0.1..1"] {
+        let found = report(&mut session, &format!("calibrate f {range} where z_t l-heel = 0.001")).unwrap();
+        near(&found["groups"][0]["value"], 0.125, 1e-6);
+        assert_eq!(found["groups"][0]["at_end"], true, "{found}");
+        let found = report(&mut session, &format!("calibrate f {range} where x_t l-heel = 1")).unwrap();
+        assert_eq!(found["groups"][0]["identifiable"], false, "{found}");
+        near(&found["groups"][0]["interval"][0], 0.125, 1e-6);
+        near(&found["groups"][0]["interval"][1], 1.0, 0.0);
+    }
+}

@@ -11,6 +11,10 @@ use crate::path::start::PathError;
 const STEPS: usize = 60;
 /// A step is halved this often before it is given up.
 const HALVINGS: usize = 24;
+/// Where a minimum stands at an end of a path, its answer is sought this share of the path inside.
+const INSIDE: [f64; 4] = [0.0, 1e-12, 1e-9, AT_END];
+/// What is no farther from an end of the range or the path than this share of it stands there.
+pub(super) const AT_END: f64 = 1e-6;
 /// Singular values below this share of the largest tell nothing.
 pub(super) const BLIND: f64 = 1e-9;
 /// Sums of squares are as good as the least where they exceed it by less than this share, and than this share of the
@@ -114,6 +118,22 @@ impl Model<'_> {
             best = next;
         }
         Ok(Some(best))
+    }
+
+    /// Downhill from a minimum over one friction. At an end of its path, beyond which there is no answer, there is one that
+    /// only just is, and a run of its own may not find it: then from a little inside.
+    pub(super) fn descend_along(&self, along: &Along, at: &[f64], group: usize) -> Result<Option<Fit>, PathError> {
+        let [low, high] = along.covered;
+        let towards = if at[group] < 0.5 * (low + high) { high - low } else { low - high };
+        for share in INSIDE {
+            let mut start = at.to_vec();
+            start[group] += share * towards;
+            let found = self.descend(start)?;
+            if found.is_some() {
+                return Ok(found);
+            }
+        }
+        Ok(None)
     }
 
     /// The step of Gauss and Newton per unit of the ranges, without what points out of the box.

@@ -19,7 +19,7 @@ use crate::model::measurement::Measurement;
 use crate::model::words::counted;
 use crate::solve::Case;
 use crate::text::number::short;
-use fit::{Along, BLIND, Fit};
+use fit::{AT_END, Along, BLIND, Fit};
 use model::Model;
 
 /// A stretch of a friction over which the measurements tell nothing counts from this share of its range on.
@@ -139,7 +139,7 @@ impl Model<'_> {
     fn of_one(&self, along: &Along) -> Result<Calibration, PathError> {
         let mut fits: Vec<Fit> = Vec::new();
         for (value, _) in along.minima.iter().take(MINIMA) {
-            fits.extend(self.descend(vec![*value])?);
+            fits.extend(self.descend_along(along, &[*value], 0)?);
         }
         fits.sort_by(|a, b| a.squares.total_cmp(&b.squares));
         fits.dedup_by(|a, b| (a.at[0] - b.at[0]).abs() <= 1e-7 * a.at[0].abs().max(b.at[0].abs()));
@@ -149,7 +149,8 @@ impl Model<'_> {
         let others = fits.iter().skip(1).filter(elsewhere).map(|fit| [fit.at[0], fit.squares]).collect();
         let name = &self.groups[0].0;
         let [low, high] = along.covered;
-        let Some(best) = fits.into_iter().next() else { return Err(self.nothing(&self.present())?) };
+        // Its minima may all stand where no run of its own finds an answer.
+        let Some(best) = fits.into_iter().next() else { return self.of_several() };
         let mut sentence = format!(
             "the least sum of squares on the exact path over {name} from {} to {}: every stretch between two breakpoints was \
              looked at",
@@ -183,14 +184,18 @@ impl Model<'_> {
                     Err(PathError::Interrupted) => return Err(PathError::Interrupted),
                     Err(_) => None,
                 };
-                let Some((value, squares)) = along.and_then(|along| along.minima.first().copied()) else {
+                let least = along.and_then(|along| Some((along.minima.first().copied()?, along)));
+                let Some(((value, squares), along)) = least else {
                     alone = false;
                     continue;
                 };
                 if squares < best.squares {
                     let mut at = best.at.clone();
                     at[group] = value;
-                    best = self.descend(at)?.filter(|fit| fit.squares < best.squares).unwrap_or(best);
+                    best = self
+                        .descend_along(&along, &at, group)?
+                        .filter(|fit| fit.squares < best.squares)
+                        .unwrap_or(best);
                 }
             }
             if best.squares >= before * (1.0 - 1e-9) {
@@ -252,7 +257,9 @@ impl Model<'_> {
         for (k, (name, range)) in self.groups.iter().enumerate() {
             let mut group = self.group(k, &best.look.pairs);
             (group.parameter, group.value) = (name.clone(), best.at[k]);
-            group.at_end = std::iter::once(range).chain(followed).any(|ends| ends.contains(&best.at[k]));
+            let is_at = |[low, high]: &[f64; 2], end: f64| (best.at[k] - end).abs() <= AT_END * (high - low);
+            let mut ranges = std::iter::once(range).chain(followed);
+            group.at_end = ranges.any(|ends| is_at(ends, ends[0]) || is_at(ends, ends[1]));
             match why(k) {
                 // At an end the sum of squares slopes: nothing says how far off the minimum would be.
                 None if group.at_end => {}
