@@ -7,6 +7,7 @@ use super::route::{Known, Route};
 use super::start::PathError;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
+use crate::text::number::short;
 
 /// Values of each parameter on a grid over one, two or three of them.
 const POINTS: [usize; 3] = [41, 11, 7];
@@ -43,6 +44,8 @@ pub struct Envelope {
     pub peaks: Vec<Peaks>,
     /// Whether the places are exact.
     pub exact: bool,
+    /// The values between which the path was followed; `None` of a grid, whose notes count the points without an answer.
+    pub covered: Option<[f64; 2]>,
     /// What limits it, in sentences.
     pub notes: Vec<String>,
 }
@@ -89,10 +92,16 @@ fn on_route(route: &Route<'_>, axis: &Axis, quantities: &[Quantity]) -> Envelope
     };
     let [low, high] = route.covered();
     let mut notes = route.notes();
-    if (low > axis.range[0] || high < axis.range[1]) && notes.is_empty() {
-        notes.push(format!("the path leads from {low} to {high} only"));
+    if low > axis.range[0] || high < axis.range[1] {
+        let [low, high] = [low, high].map(short);
+        notes.insert(0, format!("over {} from {low} to {high} only, as far as the path leads", axis.name));
     }
-    Envelope { peaks: quantities.iter().map(of).collect(), exact: route.known() == Known::Exactly, notes }
+    Envelope {
+        peaks: quantities.iter().map(of).collect(),
+        exact: route.known() == Known::Exactly,
+        covered: Some(route.covered()),
+        notes,
+    }
 }
 
 /// The quantities of an answer of its own; `None` without one.
@@ -150,7 +159,7 @@ fn on_grid(case: Case<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<Env
     if without > 0 {
         notes.push(format!("{without} of its points have no answer"));
     }
-    Ok(Envelope { peaks: all, exact: false, notes })
+    Ok(Envelope { peaks: all, exact: false, covered: None, notes })
 }
 
 /// Moves to a neighbour while that is better, then halves the distance.

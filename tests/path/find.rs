@@ -233,6 +233,11 @@ fn envelopes_tell_the_place_that_governs() {
     near(&found["envelope"][0]["largest"]["value"], 0.005, 1e-12);
     near(&found["envelope"][0]["largest"]["at"]["f"], 0.5, 0.0);
     assert!(found["notes"][0].as_str().unwrap().contains("a grid of 121 answers"), "{found}");
+    // Beyond 300 = 6 r all supports slip and nothing holds the beam: no more is said of the rest, and that it is so.
+    let found = report(&mut session, "envelope z_t c6 over F2 0..400").unwrap();
+    near(&found["covered"][0], 0.0, 0.0);
+    near(&found["covered"][1], 300.0, 1e-9);
+    assert!(found["notes"][0].as_str().unwrap().contains("over F2 from 0 to 300 only"), "{found}");
     let found = text(&mut session, "envelope x_t c6 over F2 0..250");
     assert!(found.contains("F2 = 50: pair c6 slips +"), "{found}");
 }

@@ -173,6 +173,7 @@ impl Session {
             envelope: quantities.iter().zip(&found.peaks).map(row).collect(),
             over: axes.iter().map(range).collect(),
             exact: found.exact,
+            covered: found.covered,
             notes: &found.notes,
         };
         io.show(&report, |out, style| {
@@ -220,6 +221,9 @@ struct OverParameters<'a> {
     envelope: Vec<EnvelopeRow<AtPlace>>,
     over: Vec<Range>,
     exact: bool,
+    /// As `find` has it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    covered: Option<[f64; 2]>,
     notes: &'a [String],
 }
 
