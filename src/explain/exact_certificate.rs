@@ -61,7 +61,7 @@ pub(super) fn certify_exactly(problem: &ContactProblem, pairs: &[ConePair], end:
     let free: Vec<usize> = (0..motions.len()).collect();
     let columns = motions.len() + pairs.iter().filter(|pair| pair.law.fixed_bound() > 0.0).count();
     let mut polyhedron = Polyhedron::new(columns, rows, &free);
-    match polyhedron.restore(&mut || until(end).is_continue()) {
+    match polyhedron.start(&mut || until(end).is_continue()) {
         State::Feasible => {}
         State::Empty => return Some(CertificateSearch::default()),
         State::Stopped => return Some(CertificateSearch { certificate: None, out_of_time: true }),

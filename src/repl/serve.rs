@@ -1,9 +1,13 @@
 //! `serve`: requests of another program, one JSON object a line, each answered at once by one line.
 
+use std::fmt;
 use std::io::{self, Write};
 use std::sync::mpsc::RecvTimeoutError;
 
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde_json::value::RawValue;
+use serde_json::{Map, Value, json};
 
 use crate::export::json as json_export;
 use crate::model::words::did_you_mean_typed;
@@ -39,7 +43,7 @@ pub fn serve(session: &mut Session, style: Style, signals: &Signals) -> io::Resu
         let request = match input {
             Ok(Input::Line(bytes)) => request(&bytes),
             Ok(Input::TooLong) => {
-                Err(BadRequest::new(&Value::Null, format!("a request of more than {LONGEST} bytes was not read")))
+                Err(BadRequest::new(no_id(), format!("a request of more than {LONGEST} bytes was not read")))
             }
             Ok(Input::End) | Err(RecvTimeoutError::Disconnected) => return Ok(0),
             Ok(Input::Failed(error)) => return Err(error),
@@ -48,13 +52,14 @@ pub fn serve(session: &mut Session, style: Style, signals: &Signals) -> io::Resu
         let (answer, next) = match request {
             Ok(request) => {
                 let watch = TerminalWatch::new(signals);
-                let answered = carry_out(session, &request, style, &watch);
+                let (rest, next) = carry_out(session, &request.command, style, &watch);
                 watch.clear();
-                answered
+                (Answer { id: request.id, rest }, next)
             }
-            Err(bad) => (failure(bad.id, bad.message, BAD_REQUEST), Next::Continue),
+            Err(bad) => (Answer { id: bad.id, rest: failure(bad.message, BAD_REQUEST) }, Next::Continue),
         };
-        match writeln!(stdout, "{}", printable::json(answer.to_string())).and_then(|()| stdout.flush()) {
+        let answer = serde_json::to_string(&answer).map_err(io::Error::other)?;
+        match writeln!(stdout, "{}", printable::json(answer)).and_then(|()| stdout.flush()) {
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(0),
             written => written?,
         }
@@ -67,56 +72,110 @@ pub fn serve(session: &mut Session, style: Style, signals: &Signals) -> io::Resu
     }
 }
 
+/// What stands in a line: the `id` as it was written, of which a number may have more digits than any type of ours.
+#[derive(Serialize)]
+struct Answer {
+    id: Box<RawValue>,
+    #[serde(flatten)]
+    rest: Map<String, Value>,
+}
+
+/// Null: the id of a line in which none can be read.
+fn no_id() -> Box<RawValue> {
+    RawValue::NULL.to_owned()
+}
+
+/// The keys of an object with their values as they were written, doubled ones too.
+struct Keys(Vec<(String, Box<RawValue>)>);
+
+impl<'de> Deserialize<'de> for Keys {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Keys, D::Error> {
+        struct All;
+        impl<'de> Visitor<'de> for All {
+            type Value = Keys;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Keys, A::Error> {
+                let mut keys = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    keys.push(entry);
+                }
+                Ok(Keys(keys))
+            }
+        }
+        from.deserialize_map(All)
+    }
+}
+
 /// A line that was understood.
 struct Request {
-    id: Value,
+    id: Box<RawValue>,
     command: String,
 }
 
 /// A line that was not.
 struct BadRequest {
     /// Null where none can be read.
-    id: Value,
+    id: Box<RawValue>,
     message: String,
 }
 
 impl BadRequest {
-    fn new(id: &Value, message: String) -> Self {
+    fn new(id: Box<RawValue>, message: String) -> Self {
         let form = "a request is one line of JSON, {\"id\": …, \"command\": \"…\"}";
-        BadRequest { id: id.clone(), message: format!("{message}; {form}") }
+        BadRequest { id, message: format!("{message}; {form}") }
     }
 }
 
 fn request(bytes: &[u8]) -> Result<Request, BadRequest> {
-    let value: Value = serde_json::from_slice(bytes.trim_ascii_end())
-        .map_err(|error| BadRequest::new(&Value::Null, format!("the request is not JSON: {error}")))?;
-    let Value::Object(map) = value else {
-        return Err(BadRequest::new(&Value::Null, "the request is JSON, but no object".to_owned()));
+    let not_json = |error: serde_json::Error| BadRequest::new(no_id(), format!("the request is not JSON: {error}"));
+    let whole: &RawValue = serde_json::from_slice(bytes.trim_ascii_end()).map_err(not_json)?;
+    if !whole.get().starts_with('{') {
+        return Err(BadRequest::new(no_id(), "the request is JSON, but no object".to_owned()));
+    }
+    let Keys(keys) = serde_json::from_str(whole.get()).map_err(not_json)?;
+    let all = |key: &str| keys.iter().filter(|(own, _)| own == key).map(|(_, value)| value).collect::<Vec<_>>();
+    let id = match all("id")[..] {
+        [id] => id.clone(),
+        _ => no_id(),
     };
-    let id = map.get("id").cloned().unwrap_or_default();
-    let bad = |message: String| Err(BadRequest::new(&id, message));
-    if let Some(key) = map.keys().find(|key| !KEYS.contains(&key.as_str())) {
+    let bad = |message: String| Err(BadRequest::new(id.clone(), message));
+    if let Some((key, _)) = keys.iter().find(|(key, _)| !KEYS.contains(&key.as_str())) {
         return bad(format!("unknown key `{}`{}", key, did_you_mean_typed(key, KEYS)));
     }
-    match map.get("command") {
-        Some(Value::String(command)) => Ok(Request { id: id.clone(), command: command.clone() }),
-        Some(_) => bad("`command` must be a string".to_owned()),
-        None => bad("`command` is missing".to_owned()),
+    if let Some(key) = KEYS.into_iter().find(|key| all(key).len() > 1) {
+        return bad(format!("`{key}` stands there twice"));
+    }
+    match all("command")[..] {
+        [] => bad("`command` is missing".to_owned()),
+        [command, ..] if !command.get().starts_with('"') => bad("`command` must be a string".to_owned()),
+        [command, ..] => match serde_json::from_str(command.get()) {
+            Ok(command) => Ok(Request { id, command }),
+            Err(error) => bad(format!("`command` is no string: {error}")),
+        },
     }
 }
 
-fn failure(id: Value, error: String, status: u8) -> Value {
-    json!({"id": id, "ok": false, "error": error, "status": status})
+fn failure(error: String, status: u8) -> Map<String, Value> {
+    object(json!({"ok": false, "error": error, "status": status}))
+}
+
+fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(map) => map,
+        _ => Map::new(),
+    }
 }
 
 /// Runs the commands of a request up to the first that fails (unless `expect error` follows it).
-fn carry_out(session: &mut Session, request: &Request, style: Style, watch: &TerminalWatch) -> (Value, Next) {
+fn carry_out(session: &mut Session, command: &str, style: Style, watch: &TerminalWatch) -> (Map<String, Value>, Next) {
     let mut nowhere = io::sink();
     let mut io = Output::new(&mut nowhere, style, Format::Values, watch);
     io.unattended = true;
     let mut reports = Vec::new();
     let mut next = Next::Continue;
-    for turn in Turn::of_text(&request.command) {
+    for turn in Turn::of_text(command) {
         let result = session.run(turn.command, &mut io);
         let mut answers = std::mem::take(&mut io.answers);
         let own = answers.pop().unwrap_or_default();
@@ -128,7 +187,7 @@ fn carry_out(session: &mut Session, request: &Request, style: Style, watch: &Ter
                 next = then;
             }
             Err(error) if turn.forgives(&error) => reports.push(own),
-            Err(error) => return (told(request.id.clone(), &error), Next::Continue),
+            Err(error) => return (told(&error), Next::Continue),
         }
         if next != Next::Continue {
             break;
@@ -139,15 +198,14 @@ fn carry_out(session: &mut Session, request: &Request, style: Style, watch: &Ter
         1 => reports.remove(0),
         _ => Value::Array(reports),
     };
-    (json!({"id": request.id, "ok": true, "report": report}), next)
+    (object(json!({"ok": true, "report": report})), next)
 }
 
 /// A command that failed; the problems of a scenario each with its place.
-fn told(id: Value, error: &CommandError) -> Value {
-    let mut answer = failure(id, error.to_string(), error.status());
+fn told(error: &CommandError) -> Map<String, Value> {
+    let mut answer = failure(error.to_string(), error.status());
     if let CommandError::Scenario(problems) = error
-        && let (Value::Object(answer), Value::Object(mut found)) =
-            (&mut answer, json_export::problems(std::slice::from_ref(problems)))
+        && let Value::Object(mut found) = json_export::problems(std::slice::from_ref(problems))
     {
         answer.insert("problems".to_owned(), found.remove("error").unwrap_or_default());
     }

@@ -26,7 +26,7 @@ use crate::model::rules::{Covering, Rules, TieBreak};
 use crate::watch::Watch;
 
 /// Most contact pairs that `enumerate` takes.
-const MOST_PAIRS: usize = 60;
+pub const MOST_PAIRS: usize = 60;
 /// Most rows of a bare LCP that `enumerate` takes.
 const MOST_ROWS: usize = 300;
 

@@ -233,7 +233,7 @@ fn refusals_say_what_is_expected() {
     for (words, part) in [
         ("f", "expected PARAMETER=DISTRIBUTION"),
         ("f=uniform(0.2)", "expected uniform(LEAST, GREATEST)"),
-        ("g=uniform(0,1)", "there is no parameter g"),
+        ("g=uniform(0,1)", "sample: no parameter `g`: the"),
         ("f=uniform(0,1) f=uniform(0,1)", "f is given twice"),
         ("f=uniform(-2,-1)", "must not be negative"),
         ("f=uniform(0,1) 1.5", "not a number of points"),

@@ -100,6 +100,9 @@ fn what_is_no_request_is_answered_too() {
         (b"{\"id\": null, \"comand\": \"pairs\"}", Value::Null, "did you mean `command`"),
         (b"{\"id\": 8, \"command\": \"pairs\", \"timeout\": 3}", json!(8), "unknown key `timeout`"),
         (b"{\"id\": 9, \"command\": \"piars\"}", json!(9), "did you mean `pairs`"),
+        (b"{\"id\": 1, \"command\": \"pairs\", \"id\": 2}", Value::Null, "`id` stands there twice"),
+        (b"{\"command\": \"pairs\", \"id\": 3, \"command\": \"ray\"}", json!(3), "`command` stands there twice"),
+        (b"{\"id\": 4, \"command\": \"\\ud800\"}", json!(4), "`command` is no string"),
         (b"{\"id\": 10, \"command\": \"tui\"}", json!(10), "full screen"),
         (b"{\"id\": 11, \"command\": \"pairs c99; quit\"}", json!(11), "c99"),
     ] {
@@ -116,6 +119,19 @@ fn what_is_no_request_is_answered_too() {
     assert_eq!(server.report("pairs c99; expect error c99").as_array().map(Vec::len), Some(2));
     assert_eq!(server.report("quit"), Value::Null);
     assert_eq!(server.child.wait().expect("it ends").code(), Some(0));
+}
+
+/// Whatever the digits and the size of a number, and the keys of an object: not a digit is another one.
+#[test]
+fn an_id_comes_back_as_it_was_written() {
+    let mut server = Server::start("beam");
+    for id in ["18446744073709551617", "-123456789012345678901234567890", "1.50", "1e400", "[1, {\"a\": 2}]", "\"ü\""]
+    {
+        server.send(format!("{{\"id\": {id}, \"command\": \"status\"}}").as_bytes());
+        let mut line = String::new();
+        server.answers.read_line(&mut line).expect("it writes");
+        assert!(line.starts_with(&format!("{{\"id\":{id},\"ok\":true,")), "{line}");
+    }
 }
 
 #[test]

@@ -169,7 +169,7 @@ impl<'a> ExactSystem<'a> {
             rows.push(&row);
         }
         let mut made = Polyhedron::new(k, rows, &free);
-        let mut state = made.restore(go_on);
+        let mut state = made.start(go_on);
         if state == State::Feasible {
             let bilateral = (0..system.pair_count()).filter(|&i| system.pairs[i].law.is_bilateral());
             (state, _) = made.fix_all(bilateral, go_on);

@@ -102,7 +102,7 @@ pub fn all_solutions(rows: WholeRows, observer: &mut dyn FnMut(Progress) -> bool
         found: Solutions::default(),
     };
     let mut root = Polyhedron::new(n, rows, &[]);
-    let state = root.restore(&mut search.go_on());
+    let state = root.start(&mut search.go_on());
     search.found.complete = search.node(root, state, vec![false; n], 1.0);
     search.found
 }

@@ -196,7 +196,7 @@ fn exactly(whole: &WholeRows, go_on: &mut dyn FnMut() -> bool) -> Option<Farkas>
     let n = whole.rows.len();
     let mut left = MOST_EXACT / (n * n * n).max(1);
     let mut polyhedron = Polyhedron::new(n, whole.clone(), &[]);
-    let state = polyhedron.restore(&mut || {
+    let state = polyhedron.start(&mut || {
         left = left.saturating_sub(1);
         left > 0 && go_on()
     });

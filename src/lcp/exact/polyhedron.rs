@@ -62,7 +62,7 @@ impl Polyhedron {
         for &variable in free {
             is_free[variable] = true;
         }
-        let mut made = Self {
+        Self {
             basic: (columns..count).collect(),
             nonbasic: (0..columns).collect(),
             rows: given.rows,
@@ -71,9 +71,24 @@ impl Polyhedron {
             scale: std::iter::repeat_n(BigInt::one(), columns).chain(given.scale).collect(),
             keeps_from: usize::MAX,
             fixed: vec![false; count],
-        };
-        made.free_to_rows();
-        made
+        }
+    }
+
+    /// Makes it feasible for the first time. Free variables become basic wherever they can: there they never block and
+    /// never leave.
+    pub fn start(&mut self, go_on: &mut GoOn) -> State {
+        for column in 0..self.nonbasic.len() {
+            if self.free[self.nonbasic[column]]
+                && let Some(row) =
+                    (0..self.rows.len()).find(|&r| !self.free[self.basic[r]] && !self.rows[r][column].is_zero())
+            {
+                if !go_on() {
+                    return State::Stopped;
+                }
+                self.pivot(row, column);
+            }
+        }
+        self.restore(go_on)
     }
 
     /// From now on variables that are fixed keep their columns, for [`Polyhedron::contradiction`]: all from number
@@ -136,7 +151,7 @@ impl Polyhedron {
             rows.scale.push(BigInt::one());
         }
         let mut dual = Polyhedron::new(tight.len(), rows, &[]);
-        if dual.restore(go_on) != State::Feasible {
+        if dual.start(go_on) != State::Feasible {
             return None;
         }
         let (factors, common) = clear_denominators(&(0..tight.len()).map(|k| dual.value(k)).collect::<Vec<_>>());
@@ -151,18 +166,6 @@ impl Polyhedron {
         }
         sum.retain(|(_, factor)| !factor.is_zero());
         Some(sum)
-    }
-
-    /// Free variables become basic wherever they can: there they never block and never leave.
-    fn free_to_rows(&mut self) {
-        for column in 0..self.nonbasic.len() {
-            if self.free[self.nonbasic[column]]
-                && let Some(row) =
-                    (0..self.rows.len()).find(|&r| !self.free[self.basic[r]] && !self.rows[r][column].is_zero())
-            {
-                self.pivot(row, column);
-            }
-        }
     }
 
     /// Number of nonbasic variables: 0 where the polyhedron is at most one point.
@@ -296,7 +299,7 @@ impl Polyhedron {
     }
 
     /// Makes the dictionary feasible by the least-index rule.
-    pub fn restore(&mut self, go_on: &mut GoOn) -> State {
+    fn restore(&mut self, go_on: &mut GoOn) -> State {
         loop {
             let broken = (0..self.rows.len())
                 .filter(|&r| !self.free[self.basic[r]] && self.constant(r).is_negative())
@@ -419,5 +422,28 @@ impl Polyhedron {
             }
         }
         self.restore(go_on)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// y − x ≥ 0 and 3 − y ≥ 0, x free: the first pivot, that of x, is asked for already.
+    #[test]
+    fn it_can_be_stopped_from_the_first_pivot_on() {
+        let made = || {
+            let mut rows = WholeRows::default();
+            rows.push(&[-1.0, 1.0, 0.0]);
+            rows.push(&[0.0, -1.0, 3.0]);
+            Polyhedron::new(2, rows, &[0])
+        };
+        assert_eq!(made().start(&mut || false), State::Stopped);
+        let (mut asked, mut whole) = (0, made());
+        let state = whole.start(&mut || {
+            asked += 1;
+            true
+        });
+        assert_eq!((state, asked, whole.basic().contains(&0)), (State::Feasible, 1, true));
     }
 }

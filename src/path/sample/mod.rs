@@ -22,6 +22,7 @@ use super::start::PathError;
 use super::sweep::{Format, Sweep};
 use crate::model::quantity::{OfAnswer, Quantity};
 use crate::model::scenario::Scenario;
+use crate::model::words::no_such;
 use crate::solve::Case;
 use crate::text::number::short;
 
@@ -102,8 +103,8 @@ impl Request {
                 return Err(format!("sample: {name} is given twice"));
             }
             if !scenario.parameters.contains_key(name) {
-                let known: Vec<&str> = scenario.parameters.keys().map(String::as_str).collect();
-                return Err(format!("sample: there is no parameter {name}; there are {}", known.join(", ")));
+                let known = scenario.parameters.keys().map(String::as_str);
+                return Err(format!("sample: {}", no_such("parameter", name, known)));
             }
             if let Some(refusal) = scenario.refusal(name, 1.0) {
                 return Err(format!("sample: {refusal}"));

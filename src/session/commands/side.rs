@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::answer::record::{NodeDisplacement, PairState};
 use crate::answer::same::same_pairs;
 use crate::model::parameter::ParameterValues;
+use crate::solve::all_answers::MOST_PAIRS as MOST_ENUMERATED;
 use crate::solve::case::There;
 use crate::solve::prepared::Geometry;
 use crate::solve::{Prepared, Solved};
@@ -106,10 +107,13 @@ impl Session {
                 return refused("answers are enumerated for contact problems, this is a bare LCP");
             };
             if system.turning_pairs() > MOST_PAIRS {
+                let pairs = system.turning_pairs();
+                let listed = match pairs <= MOST_ENUMERATED {
+                    true => "`enumerate` goes on until it is stopped".to_owned(),
+                    false => format!("`enumerate` takes {MOST_ENUMERATED}"),
+                };
                 return refused(format!(
-                    "{} contact pairs are too many for all answers side by side: at most {MOST_PAIRS}; `enumerate` goes on \
-                     until it is stopped",
-                    system.turning_pairs()
+                    "{pairs} contact pairs are too many for all answers side by side: at most {MOST_PAIRS}; {listed}"
                 ));
             }
             let found = shown.all_answers(&values, rules, watch)?;

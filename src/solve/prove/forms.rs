@@ -141,7 +141,7 @@ impl Forms {
         self.forms.iter().for_each(|form| rows.push_rational(form));
         let free: Vec<usize> = (0..self.names.len()).filter(|&variable| !self.signed[variable]).collect();
         let mut made = Polyhedron::new(self.unknowns, rows, &free).keep_fixed(0);
-        let state = match made.restore(go_on) {
+        let state = match made.start(go_on) {
             State::Feasible => made.fix_all(self.zero.iter().copied(), go_on),
             other => (other, None),
         };
