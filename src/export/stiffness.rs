@@ -63,9 +63,10 @@ impl Stiffness<'_> {
             .map(|(node, id)| (id.clone(), json!(dimension.shown(node.position))));
         let dofs = self.matrices.dofs.iter().map(|(node, component)| json!([nodes[*node], word(*component)]));
         let named = |list: &[usize]| list.iter().map(|&node| nodes[node].clone()).collect::<Vec<_>>();
-        let ties = self.structure.ties.iter().map(|tie| {
-            let fixed: Vec<&str> = tie.components.iter().map(|component| word(*component)).collect();
-            json!({"nodes": named(&tie.nodes), "fixed": fixed})
+        let ties = self.structure.ties.iter().filter_map(|tie| {
+            let exists = |component: &&Component| tie.nodes.iter().all(|&node| self.has(node, **component));
+            let fixed: Vec<&str> = tie.components.iter().filter(exists).map(|component| word(*component)).collect();
+            (!fixed.is_empty()).then(|| json!({"nodes": named(&tie.nodes), "fixed": fixed}))
         });
         let rigid =
             self.structure.rigid.iter().map(|body| json!({"id": ids.of(&body.id), "nodes": named(&body.nodes)}));
@@ -74,6 +75,11 @@ impl Stiffness<'_> {
             self.structure.pairs.iter().partition(|pair| Pair::is_of_nodes(pair));
         let contacts = told.into_iter().map(|pair| self.contact(pair, &nodes, ids.of(&pair.id)));
         let contacts: Vec<Value> = contacts.collect();
+        let acts = |spring: &&Spring| {
+            let mut felt = spring.terms.iter().filter(|term| term.factor != 0.0);
+            felt.all(|term| self.has(term.node, term.component))
+        };
+        let springs = self.structure.springs.iter().filter(acts);
         let mut scenario = json!({
             "format": FORMAT,
             "title": title,
@@ -86,7 +92,7 @@ impl Stiffness<'_> {
             "supports": self.supports(&nodes),
             "ties": ties.collect::<Vec<Value>>(),
             "rigid": rigid,
-            "springs": self.structure.springs.iter().map(|one| self.spring(one, &nodes)).collect::<Vec<Value>>(),
+            "springs": springs.map(|one| self.spring(one, &nodes)).collect::<Vec<Value>>(),
             "contacts": contacts,
         });
         if let Some(labels) = units.json() {
@@ -96,6 +102,12 @@ impl Stiffness<'_> {
             scenario["dimension"] = json!(3);
         }
         (scenario, untold.len())
+    }
+
+    /// Whether the displacement is a row of K. A rotation that no bar feels and nothing resists is none: what holds it
+    /// does nothing, and is refused beside a superelement.
+    fn has(&self, node: usize, component: Component) -> bool {
+        self.matrices.dofs.binary_search(&(node, component)).is_ok()
     }
 
     /// One entry for each node, and one more for each further case that moves it.
@@ -115,7 +127,7 @@ impl Stiffness<'_> {
         }
         let mut fixed: Vec<(usize, Vec<&str>)> = Vec::new();
         let mut place_of = HashMap::new();
-        for support in &self.structure.supports {
+        for support in self.structure.supports.iter().filter(|support| self.has(support.node, support.component)) {
             let place = *place_of.entry(support.node).or_insert_with(|| {
                 fixed.push((support.node, Vec::new()));
                 fixed.len() - 1

@@ -1,11 +1,12 @@
 //! Numbering of the displacement components.
 
+use super::held_hinges::held_hinges;
 use crate::doubled::Real;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
 
 /// Numbers of the nodal components ("base dofs"): the translations at every node, rotations where a frame bar is
-/// rigidly attached and at the nodes of rigid bodies; of a superelement the components of its rows.
+/// rigidly attached, at the nodes of rigid bodies and at [hinges that something holds](held_hinges); of a superelement the components of its rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dofs {
     first: Vec<u32>,
@@ -42,6 +43,9 @@ impl Dofs {
         }
         for &node in structure.rigid.iter().flat_map(|body| &body.nodes) {
             has[node] = of(dimension.components());
+        }
+        for (has, _) in std::iter::zip(&mut has, held_hinges(structure)).filter(|(_, held)| *held) {
+            *has = of(dimension.components());
         }
         let mut count = 0;
         let first = has

@@ -23,8 +23,9 @@ pub struct Matrices {
 /// # Errors
 /// An element without stiffness because of its shape; a moment where there is no rotation; interrupted.
 pub fn matrices(structure: &Structure, watch: &dyn Watch) -> Result<Matrices, MainSystemError> {
+    // A spring may hold a rotation that no element has.
+    let dofs = Dofs::new(structure);
     let bare = Structure { springs: Vec::new(), ..structure.clone() };
-    let dofs = Dofs::new(&bare);
     let k = assemble::<f64>(&bare, &dofs, &|| watch.stop())?;
     let entries = (0..k.order()).flat_map(|column| k.column(column).map(move |(row, value)| (row, column, value)));
     let of_node = |node: usize| Component::ALL.map(|component| (node, component));

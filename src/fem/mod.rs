@@ -50,6 +50,7 @@ mod expand;
 mod factor;
 mod fill;
 mod held;
+mod held_hinges;
 mod idle_spins;
 mod joint_rows;
 mod kernel;

@@ -4,6 +4,7 @@
 //! one rigid body (solids three that are not on one line); a lone node is a part without rotation. A part of a
 //! superelement moves as its stiffness lets it. Parts that share a node are pinned there.
 
+use super::held_hinges::held_hinges;
 use crate::model::groups::Groups;
 use crate::model::structure::{Component, Structure};
 use crate::model::superelement::Part;
@@ -34,6 +35,17 @@ fn axis(structure: &Structure, nodes: &[usize]) -> Option<[f64; 3]> {
     let longest = ways().max_by(|a, b| length(*a).total_cmp(&length(*b)))?;
     let along = unit(longest)?;
     ways().all(|way| length(cross(along, way)) <= STRAIGHT * length(longest)).then_some(along)
+}
+
+/// The nodes that turn by themselves: bars transmit nothing to them but their torque, or no moment at all.
+fn turning_alone(structure: &Structure, turning: &[Option<u32>]) -> Vec<usize> {
+    let mut alone = held_hinges(structure);
+    for element in &structure.elements {
+        for (at, &node) in element.nodes.iter().enumerate() {
+            alone[node] |= turning[node].is_none() && element.components(at).contains(&Component::Rx);
+        }
+    }
+    (0..structure.nodes.len()).filter(|&node| alone[node]).collect()
 }
 
 /// The parts of the superelement, if there is one.
@@ -131,15 +143,10 @@ impl Parts {
             parts.push(turns.len() as u32);
             turns.push(false);
         }
-        // A node to which bars transmit nothing but their torque turns by itself.
-        for element in &structure.elements {
-            for (at, &node) in element.nodes.iter().enumerate() {
-                if turning[node].is_none() && element.components(at).contains(&Component::Rx) {
-                    at_node[node].push(turns.len() as u32);
-                    turning[node] = Some(turns.len() as u32);
-                    turns.push(true);
-                }
-            }
+        for node in turning_alone(structure, &turning) {
+            at_node[node].push(turns.len() as u32);
+            turning[node] = Some(turns.len() as u32);
+            turns.push(true);
         }
         Parts { at_node, turning, turns, of_element, of_superelement }
     }

@@ -106,3 +106,73 @@ fn a_spring_holds_a_loose_block() {
     let slide = displacement(&answer, "up[0,0]")[0] - displacement(&answer, "low[0,1]")[0];
     near("slide", slide, 1.0 / 10.0, 1e-4, 1.0);
 }
+
+/// A node at which the only bar is hinged has a rotation where something holds it: a spring from there to the other end of
+/// a simple beam follows that end and carries nothing, M = 0 at both ends; one to the ground there carries nothing
+/// either. Turned by φ by a support, the node pulls that end through the spring: M = k φ/(1 + k L/3EI), with which a
+/// beam that is hinged there as well resists. In space the same.
+#[test]
+fn rotational_springs_at_hinges() {
+    let (k, q, phi) = (30.0, 2.0, 0.01);
+    let beam = |in_space: bool, springs: serde_json::Value, turned: bool| {
+        let place = |x: f64| if in_space { json!([x, 0, 0]) } else { json!([x, 0]) };
+        let section = match in_space {
+            true => json!({ "area": 1, "inertia_y": 1, "inertia_z": 1, "torsion": 1 }),
+            false => json!({ "area": 1, "inertia": 1 }),
+        };
+        let axes = |plane: serde_json::Value, space: serde_json::Value| if in_space { space } else { plane };
+        let mut ends = axes(json!(["x", "y"]), json!(["x", "y", "z"])).as_array().unwrap().clone();
+        let mut start = ends.clone();
+        if in_space {
+            start.push(json!("rx"));
+        }
+        let settled = turned.then(|| axes(json!([0, 0, phi]), json!([0, 0, 0, 0, 0, phi])));
+        if turned {
+            ends.push(axes(json!("r"), json!("rz")));
+        }
+        let mut support = json!({ "at": "b", "fixed": ends });
+        if let Some(settled) = settled {
+            support["settlement"] = settled;
+            support["case"] = json!("w");
+        }
+        let line = axes(json!([0, -q]), json!([0, -q, 0]));
+        let items = if turned { json!([]) } else { json!([{ "line": { "bar": "ab", "value": line } }]) };
+        let mut scenario = json!({
+            "materials": { "m": { "E": EI, "nu": 0.2 } },
+            "sections": { "s": section },
+            "nodes": { "a": place(0.0), "b": place(L) },
+            "bars": [{ "id": "ab", "nodes": ["a", "b"], "material": "m", "section": "s", "hinges": ["end"] }],
+            "supports": [{ "at": "a", "fixed": start }, support],
+            "springs": springs,
+            "loads": { "w": { "items": items } }
+        });
+        if in_space {
+            scenario["dimension"] = json!(3);
+        }
+        Case::json(scenario).solve(&[])
+    };
+    for in_space in [false, true] {
+        let turn = |answer: &stickslip::answer::record::Answer, node: &str| displacement(answer, node)[2];
+        let about = |mut spring: serde_json::Value| {
+            if in_space {
+                spring["direction"] = json!([0, 0, 1]);
+            }
+            json!([spring])
+        };
+        let simple = -q * L.powi(3) / (24.0 * EI);
+        for spring in [json!({ "between": ["a", "b"], "rotation": k }), json!({ "between": ["b", "a"], "rotation": k })]
+        {
+            let answer = beam(in_space, about(spring.clone()), false);
+            is_answer(&answer);
+            close("turn", turn(&answer, "a"), simple, 1e-11);
+            close("follows", turn(&answer, "b"), simple, 1e-11);
+            let answer = beam(in_space, about(spring), true);
+            is_answer(&answer);
+            let moment = k * phi / (1.0 + k * L / (3.0 * EI));
+            close("turned", turn(&answer, "b"), phi, 1e-14);
+            close("pulled", turn(&answer, "a"), moment * L / (3.0 * EI), 1e-11);
+        }
+        let answer = beam(in_space, about(json!({ "at": "b", "rotation": k })), false);
+        close("grounded", turn(&answer, "a"), simple, 1e-11);
+    }
+}

@@ -241,6 +241,46 @@ fn k_and_f_come_back_as_a_superelement() {
     assert!(same.len() >= 12 && !refused.is_empty(), "{same:?} {refused:?}");
 }
 
+/// What holds a rotation at a hinge comes back where it does something, and is left out where it does not: B turns with A
+/// through the spring, C is turned and pulls D, E is held, F and G would turn by themselves. With M_D = k φ/(1 + k L/3EI).
+#[test]
+fn rotations_at_hinges_come_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = r#"{ "format": "stickslip/1", "title": "Hinges",
+        "materials": {"m": {"E": 200, "nu": 0.2}}, "sections": {"s": {"area": 1, "inertia": 1}},
+        "nodes": {"A": [0, 0], "B": [4, 0], "C": [0, 2], "D": [4, 2], "E": [0, 4], "F": [4, 4], "G": [8, 4]},
+        "bars": [{"id": "AB", "nodes": ["A", "B"], "material": "m", "section": "s", "hinges": ["end"]},
+                 {"id": "CD", "nodes": ["C", "D"], "material": "m", "section": "s", "hinges": ["start"]},
+                 {"id": "EF", "nodes": ["E", "F"], "material": "m", "section": "s", "hinges": ["start", "end"]},
+                 {"id": "FG", "nodes": ["F", "G"], "material": "m", "section": "s", "hinges": ["start", "end"]}],
+        "supports": [{"at": "A", "fixed": ["x", "y"]}, {"at": "B", "fixed": ["x", "y"]},
+                     {"at": "C", "fixed": ["x", "y", "r"], "settlement": [0, 0, 0.01], "case": "q"},
+                     {"at": "D", "fixed": ["x", "y"]}, {"at": "E", "fixed": ["x", "y", "r"]},
+                     {"at": "F", "fixed": ["x", "y"]}, {"at": "G", "fixed": ["x", "y"]}],
+        "ties": [{"nodes": ["F", "G"], "fixed": ["y", "r"]}],
+        "springs": [{"between": ["A", "B"], "rotation": 30}, {"between": ["C", "D"], "rotation": 30},
+                    {"between": ["F", "G"], "rotation": 5}, {"at": "E", "rotation": 7}],
+        "loads": {"q": {"items": [{"line": {"bar": "AB", "value": [0, -2]}}]}} }"#;
+    let scenario = folder.path().join("a.json");
+    fs::write(&scenario, text).expect("a file");
+    let mut session = Session::new(load_file(&scenario).unwrap_or_else(|e| panic!("{e}")), &Quiet).expect("solved");
+    run(&mut session, &format!("export stiffness '{}/b.json'", folder.path().display())).expect("written");
+    let back = load_file(&folder.path().join("b.json")).unwrap_or_else(|e| panic!("{e}"));
+    let back = Session::new(back, &Quiet).expect("solved");
+    for session in [&session, &back] {
+        let turns = answer(session).displacements.as_ref().expect("u");
+        let near = |node: usize, right: f64| {
+            let found = turns[node].rz;
+            assert!((found - right).abs() < 1e-12, "{node}: {found} {right}");
+        };
+        let (simple, moment) = (-2.0 * 64.0 / (24.0 * 200.0), 30.0 * 0.01 / (1.0 + 30.0 * 4.0 / 600.0));
+        for (node, turn) in [(0, simple), (1, simple), (2, 0.01), (3, moment * 4.0 / 600.0), (4, 0.0)] {
+            near(node, turn);
+        }
+        assert_eq!((turns[5].rz, turns[6].rz), (0.0, 0.0));
+    }
+}
+
 /// Supports that settle, ties, rigid bodies, springs of every kind, edges that do not match.
 #[test]
 fn what_stands_beside_k_comes_along() {
