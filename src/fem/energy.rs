@@ -1,10 +1,16 @@
-//! Work of the loads and strain energy of the structure at given displacements.
+//! Work of the loads and energy of the structure at given displacements.
 
 use nalgebra::DVector;
 use stickslip_numerics::doubled::dot;
 
+use super::assembly::given_entries;
 use super::displacements::Displacements;
+use super::element::{finite_element, spring};
+use super::loads::ActingLoads;
 use super::main_system::MainSystem;
+use super::recovery::own_displacements;
+use crate::doubled::Doubled;
+use crate::model::structure::Structure;
 
 /// A state of the structure with what acts on it.
 #[derive(Clone, Copy, Debug)]
@@ -40,8 +46,11 @@ impl MainSystem {
         0.5 * (of_loads + of_supports)
     }
 
-    /// U = ½ uᵀ K u ≥ 0, force · length.
-    pub fn strain_energy(&self, u: &Displacements) -> f64 {
+    /// ½ uᵀ K u ≥ 0, force · length: what K stores at the displacements of the nodes, beside which [`Self::work_between`] is the work
+    /// of the nodal forces. Of a load between nodes both leave out the same, what it does to its element while the nodes
+    /// stand still; of heat both count what its nodal forces do. So these two balance, and [`Self::strain_energy`] does
+    /// with neither.
+    pub fn nodal_energy(&self, u: &Displacements) -> f64 {
         0.5 * match &self.doubled {
             None => {
                 let u = self.dofs.gather(&u.0);
@@ -52,5 +61,33 @@ impl MainSystem {
                 dot(&k.times(&u), &u).to_f64()
             }
         }
+    }
+
+    /// Strain energy ≥ 0, force · length, at the displacements `u` under Σ factor·F: of the forces inside all elements, with
+    /// what acts between their nodes and without what they do freely; of springs; of a superelement ½ uᵀ K u.
+    pub fn strain_energy(&self, structure: &Structure, u: &Displacements, factors: &[f64]) -> f64 {
+        let loads = ActingLoads::of(structure, factors);
+        let of_element = |index: usize| {
+            // One without shape was refused by its stiffness.
+            let element = finite_element(structure, index).ok()?;
+            Some(element.strain_energy(&own_displacements(structure, index, u), loads.on(index)))
+        };
+        let of_elements: f64 = (0..structure.elements.len()).filter_map(of_element).sum();
+        let of_springs: f64 = structure.springs.iter().map(|one| spring::energy(one, &u.0)).sum();
+        of_elements + of_springs + self.given_energy(structure, u)
+    }
+
+    /// ½ uᵀ K u of the superelement.
+    fn given_energy(&self, structure: &Structure, u: &Displacements) -> f64 {
+        if structure.superelement.is_none() {
+            return 0.0;
+        }
+        let u = self.dofs.gather(&u.doubled());
+        let mut twice = Doubled::default();
+        given_entries(structure, &self.dofs, |row, column, value| {
+            let own = u[row] * u[column] * Doubled::from(value);
+            twice += if row == column { own } else { own + own };
+        });
+        0.5 * twice.to_f64()
     }
 }

@@ -12,6 +12,7 @@ mod cantilever_gap;
 mod contact_system;
 mod edge_cases;
 mod elements;
+mod energy;
 mod far_apart;
 mod foundation;
 mod foundations;

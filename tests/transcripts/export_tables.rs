@@ -241,6 +241,29 @@ fn k_and_f_come_back_as_a_superelement() {
     assert!(same.len() >= 12 && !refused.is_empty(), "{same:?} {refused:?}");
 }
 
+/// A cantilever under a force at its end stores F² L³/6EI, as it is and as a superelement.
+#[test]
+fn a_superelement_stores_as_much() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = r#"{ "format": "stickslip/1", "title": "Cantilever",
+        "materials": {"m": {"E": 200, "nu": 0.2}}, "sections": {"s": {"area": 1, "inertia": 1}},
+        "nodes": {"A": [0, 0], "B": [4, 0]},
+        "bars": [{"id": "AB", "nodes": ["A", "B"], "material": "m", "section": "s", "divisions": 2}],
+        "supports": [{"at": "A", "fixed": ["x", "y", "r"]}],
+        "loads": {"q": {"items": [{"point": {"at": "B", "force": [0, -3]}}]}} }"#;
+    let scenario = folder.path().join("a.json");
+    fs::write(&scenario, text).expect("a file");
+    let mut session = Session::new(load_file(&scenario).unwrap_or_else(|e| panic!("{e}")), &Quiet).expect("solved");
+    run(&mut session, &format!("export stiffness '{}/b.json'", folder.path().display())).expect("written");
+    let back = load_file(&folder.path().join("b.json")).unwrap_or_else(|e| panic!("{e}"));
+    let back = Session::new(back, &Quiet).expect("solved");
+    for mut session in [session, back] {
+        let shown = lines::report(&mut session, "show energy").unwrap_or_else(|e| panic!("{e}"));
+        let energy = shown[0]["value"].as_f64().expect("a number");
+        assert!((energy - 9.0 * 64.0 / 1200.0).abs() < 1e-12, "{energy}");
+    }
+}
+
 /// What holds a rotation at a hinge comes back where it does something, and is left out where it does not: B turns with A
 /// through the spring, C is turned and pulls D, E is held, F and G would turn by themselves. With M_D = k φ/(1 + k L/3EI).
 #[test]

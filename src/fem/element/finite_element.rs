@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::acting::Acting;
 use super::bar_load::BarForces;
 use crate::doubled::{Doubled, Real};
+use crate::model::structure::Material;
 
 /// Stiffness of an element in global axes, rows as in [`slots`](super::slots); forces per displacement.
 pub type Stiffness<T = f64> = DMatrix<T>;
@@ -19,6 +20,16 @@ pub(super) fn weighted(weights: &[f64], stresses: impl Iterator<Item = Stress>) 
         sum.iter_mut().zip(stress).for_each(|(sum, value)| *sum += weight * value);
     }
     sum
+}
+
+/// Strain energy per volume of a stress in an elastic material: of what changes the shape, and of what changes the volume.
+pub(super) fn energy_of_stress(material: &Material, [xx, yy, xy, zz, yz, zx]: Stress) -> f64 {
+    let sum = xx + yy + zz;
+    let mean = sum / 3.0;
+    let of_shape: f64 =
+        [xx, yy, zz].iter().map(|direct| (direct - mean).powi(2)).sum::<f64>() + 2.0 * (xy * xy + yz * yz + zx * zx);
+    let of_volume = (1.0 - 2.0 * material.poisson_ratio) / (6.0 * material.youngs_modulus);
+    of_shape / (4.0 * material.shear_modulus()) + of_volume * sum * sum
 }
 
 /// What an element does with displacements and loads. Vectors and matrices have rows as in [`slots`](super::slots).
@@ -37,6 +48,9 @@ pub trait FiniteElement {
 
     /// Nodal forces in global axes that stand for what acts; kinds of load that no reader puts on it are ignored.
     fn nodal_forces(&self, acting: &Acting) -> Vec<f64>;
+
+    /// Strain energy for its displacements `u`: of the forces and stresses inside, so that what it does freely costs nothing.
+    fn strain_energy(&self, u: &[f64], acting: &Acting) -> f64;
 
     /// Internal forces of a bar for its displacements `u`.
     fn bar_forces(&self, _u: &[f64], _acting: &Acting) -> Option<BarForces> {

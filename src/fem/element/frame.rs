@@ -106,6 +106,13 @@ impl FiniteElement for Frame {
         self.rows().map(|row| f[row]).collect()
     }
 
+    fn strain_energy(&self, u: &[f64], acting: &Acting) -> f64 {
+        let Beam { axial, bending, shear, .. } = self.beam;
+        let none = f64::INFINITY;
+        let stiffnesses = [axial, shear.unwrap_or(none), bending, none, none, none];
+        self.bar_forces(u, acting).map_or(0.0, |forces| forces.strain_energy(&stiffnesses))
+    }
+
     fn bar_forces(&self, u: &[f64], acting: &Acting) -> Option<BarForces> {
         let load = BarLoad::of(acting, &self.axes, self.area);
         Some(load.forces_along(self.end_forces(&self.with_released(u), &load), self.axes.length))

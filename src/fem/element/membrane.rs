@@ -10,7 +10,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::acting::{Acting, free_strain};
-use super::finite_element::{FiniteElement, Stiffness, Stress, weighted};
+use super::finite_element::{FiniteElement, Stiffness, Stress, energy_of_stress, weighted};
 use super::incompatible;
 use super::jacobian::{determinant, in_plane};
 use crate::doubled::{Doubled, Real};
@@ -229,6 +229,15 @@ impl FiniteElement for Membrane<'_> {
             all.iter_mut().zip(forces).for_each(|(all, force)| *all += force);
         }
         all
+    }
+
+    fn strain_energy(&self, u: &[f64], acting: &Acting) -> f64 {
+        let (u, strain) = (self.with_modes(u), free_strain(acting));
+        let of_point = |(at, w): ([f64; 2], f64)| {
+            let volume = self.thickness * self.gradients::<f64>(at).1 * w;
+            volume * energy_of_stress(self.material, self.stress_at_point(at, &u, strain))
+        };
+        self.shape().points().into_iter().map(of_point).sum()
     }
 
     fn stress(&self, u: &[f64], acting: &Acting) -> Option<Stress> {

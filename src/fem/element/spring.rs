@@ -11,8 +11,17 @@ pub fn stiffness<T: Real>(spring: &Spring, i: usize, j: usize) -> T {
 /// Force, or moment, with which it resists: s Σ a u for displacements per node, > 0 where it is stretched. It pulls
 /// back: on the component of a term it acts with −a times that.
 pub fn force(spring: &Spring, u: &[[f64; 6]]) -> f64 {
-    let stretch: f64 = spring.terms.iter().map(|term| term.factor * u[term.node][term.component as usize]).sum();
-    spring.stiffness * stretch
+    spring.stiffness * stretch(spring, u)
+}
+
+/// Σ a u.
+fn stretch(spring: &Spring, u: &[[f64; 6]]) -> f64 {
+    spring.terms.iter().map(|term| term.factor * u[term.node][term.component as usize]).sum()
+}
+
+/// ½ s (Σ a u)² for displacements per node.
+pub fn energy(spring: &Spring, u: &[[f64; 6]]) -> f64 {
+    0.5 * force(spring, u) * stretch(spring, u)
 }
 
 #[cfg(test)]

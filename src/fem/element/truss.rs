@@ -94,6 +94,13 @@ impl FiniteElement for Truss {
         forces.iter().flat_map(|&force| self.axes.to_global(force)[..self.translations].to_vec()).collect()
     }
 
+    fn strain_energy(&self, u: &[f64], acting: &Acting) -> f64 {
+        // What lies across it is carried to the nodes without yielding.
+        let mut stiffnesses = [f64::INFINITY; 6];
+        stiffnesses[0] = self.axial;
+        self.bar_forces(u, acting).map_or(0.0, |forces| forces.strain_energy(&stiffnesses))
+    }
+
     fn bar_forces(&self, u: &[f64], acting: &Acting) -> Option<BarForces> {
         let load = BarLoad::of(acting, &self.axes, self.area);
         Some(load.forces_along(self.end_forces(u, &load), self.axes.length))

@@ -39,8 +39,8 @@ impl Facts<'_> {
                 count(all.answers.len())
             }
             OfAnswer::Energy => {
-                let (_, main) = self.structure()?;
-                Value::finite(main.strain_energy(self.displacements()?))
+                let (structure, main) = self.structure()?;
+                Value::finite(main.strain_energy(structure, self.displacements()?, &self.factors))
             }
             OfAnswer::Dissipated => Value::finite(self.history()?.stages.iter().map(|stage| stage.dissipated).sum()),
         }

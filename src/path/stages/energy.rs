@@ -38,7 +38,7 @@ pub(super) fn balance(prepared: &Prepared, problem: &ContactProblem, history: &m
         let mut before: Option<(&Moment, Displacements, f64)> = None;
         for moment in &stage.moments {
             let u = displacements(moment);
-            let stored = main.strain_energy(&u);
+            let stored = main.nodal_energy(&u);
             largest = largest.max(stored.abs());
             if let Some((last, old, old_stored)) = &before {
                 let straight = main.work_between(&loaded(old, last), &loaded(&u, moment));

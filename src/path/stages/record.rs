@@ -49,7 +49,7 @@ pub struct StageResult {
     pub slip: Vec<f64>,
     /// Work lost in friction, −∫ x_τ dz_τ ≥ 0.
     pub dissipated: f64,
-    /// Work of the loads and change of the strain energy; structures only.
+    /// Work of the nodal forces and change of the energy that the nodes store; structures only.
     pub energy: Option<Energy>,
     /// What the ends of its legs may be wrong by, as a share of the largest displacement, where directions of slip turn
     /// on the way: the sum of the last corrections. `None` where every way is straight.
@@ -72,12 +72,13 @@ impl StageResult {
     }
 }
 
-/// ∫ F·du = ΔU + D of a stage.
+/// ∫ F·du = ΔU + D of a stage, with the nodal forces F that stand for all loads, heat among them, and the displacements u of
+/// the nodes: what loads between nodes do to their elements while the nodes stand still is in neither.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// ∫ F·du.
     pub work: f64,
-    /// ΔU, U = ½ uᵀ K u.
+    /// ΔU, U = ½ uᵀ K u of the nodes.
     pub stored: f64,
     /// |work − stored − dissipated| / the largest energy met in the whole history: a stage that does no work has no
     /// scale of its own.

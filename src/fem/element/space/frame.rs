@@ -172,6 +172,13 @@ impl FiniteElement for SpaceFrame {
         self.rows().into_iter().map(|row| f[row]).collect()
     }
 
+    fn strain_energy(&self, u: &[f64], acting: &Acting) -> f64 {
+        let [y, z] = &self.beams;
+        let [shear_y, shear_z] = [y, z].map(|beam| beam.shear.unwrap_or(f64::INFINITY));
+        let stiffnesses = [y.axial, shear_y, y.bending, shear_z, z.bending, self.torsion];
+        self.bar_forces(u, acting).map_or(0.0, |forces| forces.strain_energy(&stiffnesses))
+    }
+
     fn bar_forces(&self, u: &[f64], acting: &Acting) -> Option<BarForces> {
         let load = BarLoad::of(acting, &self.axes, self.area);
         Some(load.forces_along(self.end_forces(&self.with_left_out(u), &load), self.axes.length))

@@ -9,7 +9,7 @@
 //! Hughes, *The Finite Element Method*, 1987, §2.7 and §3.10.
 
 use super::super::acting::{Acting, free_strain};
-use super::super::finite_element::{FiniteElement, Stiffness, Stress, weighted};
+use super::super::finite_element::{FiniteElement, Stiffness, Stress, energy_of_stress, weighted};
 use super::super::incompatible;
 use super::super::jacobian::{SpaceJacobian, Triple};
 use crate::doubled::{Doubled, Real};
@@ -232,6 +232,15 @@ impl FiniteElement for Solid<'_> {
             all.iter_mut().zip(forces).for_each(|(all, force)| *all += force);
         }
         all
+    }
+
+    fn strain_energy(&self, u: &[f64], acting: &Acting) -> f64 {
+        let (u, strain) = (self.with_modes(u), free_strain(acting));
+        let of_point = |(at, w): VolumePoint| {
+            let volume = self.gradients::<f64>(at).determinant * w;
+            volume * energy_of_stress(self.material, self.stress_at_point(at, &u, strain))
+        };
+        self.points().into_iter().map(of_point).sum()
     }
 
     fn stress(&self, u: &[f64], acting: &Acting) -> Option<Stress> {
