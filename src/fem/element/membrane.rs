@@ -330,6 +330,23 @@ mod tests {
         }
     }
 
+    /// Without loads the energy of the stresses is ½ uᵀ k u, whatever the shape and the displacements.
+    #[test]
+    fn stresses_store_what_the_stiffness_does() {
+        for nodes in distorted() {
+            for plane in [Plane::Stress, Plane::Strain] {
+                with(&nodes, plane, |plain| {
+                    for incompatible in [false, nodes.len() == 4] {
+                        let element = Membrane { nodes: nodes.clone(), incompatible, ..*plain };
+                        let u = nalgebra::DVector::from_fn(2 * nodes.len(), |i, _| (1.7 * i as f64 + 0.3).sin());
+                        let right = 0.5 * u.dot(&(element.stiffness().unwrap() * &u));
+                        assert!((element.strain_energy(u.as_slice(), &[]) - right).abs() < 1e-13 * right);
+                    }
+                });
+            }
+        }
+    }
+
     /// Free expansion is met exactly by u = α ΔT x: no stress in the plane, and k u = f. In plane strain ε_z is held.
     #[test]
     fn free_expansion_makes_no_stress() {

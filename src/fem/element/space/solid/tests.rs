@@ -220,6 +220,20 @@ fn energy_of_a_linear_field() {
     }
 }
 
+/// Without loads the energy of the stresses is ½ uᵀ k u, whatever the shape and the displacements.
+#[test]
+fn stresses_store_what_the_stiffness_does() {
+    let random = &mut ChaCha8Rng::seed_from_u64(8);
+    for kind in [(4, false), (8, false), (8, true), (10, false), (20, false)] {
+        let mesh = Mesh::new(kind, 1, [1.0, 1.2, 0.9], 0.1, random);
+        let material = material();
+        let solid = mesh.solid(0, &material);
+        let u = nalgebra::DVector::from_fn(3 * solid.nodes.len(), |i, _| (1.7 * i as f64 + 0.3).sin());
+        let right = 0.5 * u.dot(&(solid.stiffness().unwrap() * &u));
+        assert!((solid.strain_energy(u.as_slice(), &[]) - right).abs() < 1e-13 * right, "{kind:?}");
+    }
+}
+
 /// Six rigid motions cost nothing, and nothing else does.
 #[test]
 fn six_rigid_motions() {
