@@ -69,9 +69,10 @@ impl AttemptRules {
 
     /// Why an answer has no pivots.
     pub fn why_no_pivots(self) -> String {
-        match self.engine.is_without_pivots() {
-            true => format!("no pivots: the answer was found by {}", self.engine),
-            false => "no pivots: the main system is the answer".to_owned(),
+        match self.engine {
+            AttemptEngine::AtRest => "no pivots: the joints that repeat one another stay at rest".to_owned(),
+            engine if engine.is_without_pivots() => format!("no pivots: the answer was found by {engine}"),
+            _ => "no pivots: the main system is the answer".to_owned(),
         }
     }
 }

@@ -10,6 +10,8 @@ use crate::lcp::problem::NOISE;
 pub(super) struct Condensed {
     /// The joints, in increasing order.
     joints: Vec<usize>,
+    /// Place of each joint among them; of no meaning for the others.
+    place: Vec<usize>,
     stiffness: DMatrix<f64>,
     /// R_FF⁻¹ R_FJ: what the released joints F take back per unit of each joint; 0 × J where none is released.
     follow: DMatrix<f64>,
@@ -21,23 +23,21 @@ impl Condensed {
         joints.sort_unstable();
         joints.dedup();
         let r = &laws.problem.system.stiffness;
+        let mut place = vec![0; r.nrows()];
+        joints.iter().enumerate().for_each(|(at, &joint)| place[joint] = at);
         let own = DMatrix::from_fn(joints.len(), joints.len(), |a, b| r[(joints[a], joints[b])]);
         if released.joints.is_empty() {
             let follow = DMatrix::zeros(0, joints.len());
-            return Condensed { joints, stiffness: own, follow };
+            return Condensed { joints, place, stiffness: own, follow };
         }
         let across = DMatrix::from_fn(released.joints.len(), joints.len(), |a, b| r[(released.joints[a], joints[b])]);
         let follow = released.solve_many(&across);
-        Condensed { stiffness: own - across.transpose() * &follow, joints, follow }
-    }
-
-    fn place(&self, joint: usize) -> usize {
-        self.joints.binary_search(&joint).unwrap_or_default()
+        Condensed { stiffness: own - across.transpose() * &follow, joints, place, follow }
     }
 
     /// Entry of two of its joints.
     pub(super) fn entry(&self, row: usize, column: usize) -> f64 {
-        self.stiffness[(self.place(row), self.place(column))]
+        self.stiffness[(self.place[row], self.place[column])]
     }
 
     /// The load's rate in its joints, and what of it may be rounding; both over all joints, and of no meaning in others.

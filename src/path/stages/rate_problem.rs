@@ -11,7 +11,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector, Dyn, LU};
+use nalgebra::{DMatrix, DVector};
 
 use super::condensed::Condensed;
 use super::released::Released;
@@ -27,6 +27,7 @@ use crate::lcp::problem::{NOISE, Scale};
 use crate::model::rules::TieBreak;
 use crate::solve::engines::run_scheme;
 use crate::watch::Watch;
+use stickslip_numerics::decompositions::Factor;
 
 /// Rate problems with at most this many rows are searched basis by basis where Lemke's algorithm ends in a ray.
 const SEARCHED_ROWS: usize = 14;
@@ -222,7 +223,7 @@ impl<'a> RateProblem<'a> {
         });
         let steps = self.matrix_of(standing, released, moving).and_then(|matrix| matrix.solve(&residual));
         let mut own = DVector::zeros(z.len());
-        if let Some(steps) = steps.filter(|steps| steps.iter().all(|step| step.is_finite())) {
+        if let Some(steps) = steps {
             for (meaning, step) in moving.iter().zip(steps.iter()) {
                 let (joint, sign) = moved(self.laws, *meaning);
                 own[joint] -= sign * step;
@@ -234,7 +235,7 @@ impl<'a> RateProblem<'a> {
     }
 
     /// The condensed stiffness of the moving couples, factorized.
-    fn matrix_of(&self, standing: &Standing, released: &Released, moving: &[RowId]) -> Option<LU<f64, Dyn, Dyn>> {
+    fn matrix_of(&self, standing: &Standing, released: &Released, moving: &[RowId]) -> Option<Factor> {
         if moving.is_empty() {
             return None;
         }
@@ -247,7 +248,7 @@ impl<'a> RateProblem<'a> {
             let entry = |(row, by): &(usize, f64)| by * stiffness.entry(*row, joint);
             sign * rows[a].iter().map(entry).sum::<f64>()
         });
-        Some(matrix.lu())
+        Some(Factor::new(matrix))
     }
 }
 
