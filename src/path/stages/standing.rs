@@ -6,6 +6,7 @@ use crate::answer::record::{PairState, State};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
+use stickslip_numerics::products::add_columns;
 
 /// A direction of slip; x^σ = bound + σ x_τ is the reserve that it uses up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,7 +91,12 @@ impl Laws<'_> {
 
     /// λ = R z + load, afresh.
     pub(super) fn force(&self, z: &DVector<f64>, load: &DVector<f64>) -> DVector<f64> {
-        &self.problem.system.stiffness * z + load
+        let columns = self.problem.system.stiffness.as_slice().chunks_exact(z.len().max(1));
+        // Most joints of a large structure stand still.
+        let moving: Vec<(&[f64], f64)> = columns.zip(z.iter().copied()).filter(|(_, z)| *z != 0.0).collect();
+        let mut force = DVector::zeros(z.len());
+        add_columns(force.as_mut_slice(), &moving);
+        force + load
     }
 
     /// Σ_k |R_ik| |z_k| + `load`: what the rounding of the forces is judged against, joint by joint.
