@@ -78,12 +78,25 @@ fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<(PivotedCholes
 
 /// A stiffness matrix with its null space. Where it is singular, or nearly so, entries that may be rounding are taken as that
 /// unless the motions of the whole are then fewer.
-fn with_null_space(matrix: DMatrix<f64>) -> Result<(DMatrix<f64>, PivotedCholesky, NullSpace), GivenError> {
+fn with_null_space(
+    matrix: DMatrix<f64>,
+    remarks: &mut Vec<String>,
+) -> Result<(DMatrix<f64>, PivotedCholesky, NullSpace), GivenError> {
     let (whole, null) = null_space("stiffness", &matrix)?;
     let is_regular = null.exact.is_empty() && null.near.is_empty();
     if !is_regular && let Some(cleared) = without_rounding(&matrix) {
         let (factor, motions) = null_space("stiffness", &cleared)?;
         if motions.exact.len() >= null.exact.len() && motions.near.len() <= null.near.len() {
+            // Each entry stands on both sides of the diagonal.
+            let count = matrix.iter().zip(cleared.iter()).filter(|(given, taken)| given != taken).count() / 2;
+            let entries = if count == 1 {
+                "entry of the contact stiffness matrix is"
+            } else {
+                "entries of the contact stiffness matrix are"
+            };
+            remarks.push(format!(
+                "{count} {entries} what rounding leaves of zero: taken as 0, no free motion is held by that"
+            ));
             return Ok((cleared, factor, motions));
         }
     }
@@ -105,7 +118,7 @@ fn from_stiffness(
             (motions, data)
         }
         None => {
-            let (matrix, whole, null) = with_null_space(matrix)?;
+            let (matrix, whole, null) = with_null_space(matrix, &mut remarks)?;
             remarks.extend(null.near.iter().map(|z| nearly_singular(given, z, &whole.scale)));
             if null.least < -DIGITS * matrix.nrows() as f64 {
                 remarks.push(format!(
