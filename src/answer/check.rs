@@ -9,6 +9,9 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::sum::{HIDDEN, LAW_ROUNDING, Sum};
 use crate::contact::sums::{pair_sums, share_of};
 
+/// Rounding of a sum of products whose factors are rounded once, as a share of the magnitude of its terms.
+const LAST_DIGIT: f64 = 4.0 * f64::EPSILON;
+
 /// Largest relative violation that an answer may have where sizes are those of a whole problem.
 pub const TOLERANCE: f64 = 1e-9;
 
@@ -92,9 +95,6 @@ fn load_size(problem: &ContactProblem) -> f64 {
     let bounds = problem.fixed_bounds().into_iter().fold(0.0, f64::max);
     problem.load_terms.amax().max(closing.amax()).max(bounds)
 }
-
-/// Rounding of a sum of products whose factors are rounded once, as a share of the magnitude of its terms.
-const LAST_DIGIT: f64 = 4.0 * f64::EPSILON;
 
 impl Check {
     /// Whether no law is violated by more than this share of the terms of its row, and what belongs to the whole problem

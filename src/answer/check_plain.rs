@@ -9,11 +9,16 @@ use crate::lcp::problem::NOISE;
 /// its own terms, so that no row hides behind the size of another one; z_i has no terms and must not be negative at
 /// all. `tolerance`: the share of that sum that passes as rounding, [`ROW_ROUNDING`] for an answer that is not marginal.
 pub fn check_plain(lcp: &MirroredLcp, z: &[f64], tolerance: f64) -> Check {
+    check_rows(&rows(lcp, z), z, tolerance)
+}
+
+/// The same of z whose [`rows`] are known.
+pub fn check_rows(rows: &[Sum], z: &[f64], tolerance: f64) -> Check {
     let length = z.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
     let mut check = Check::default();
     let mut sound = z.iter().all(|z| z.is_finite());
-    for (i, &z_i) in z.iter().enumerate() {
-        let w = row(lcp, z, i).relative();
+    for (row, &z_i) in rows.iter().zip(z) {
+        let w = row.relative();
         check.min_w = check.min_w.min(w);
         check.min_z = check.min_z.min(if length > 0.0 { z_i / length } else { 0.0 });
         if z_i != 0.0 {
@@ -23,6 +28,11 @@ pub fn check_plain(lcp: &MirroredLcp, z: &[f64], tolerance: f64) -> Check {
     }
     check.passed = sound && check.min_z >= 0.0 && check.min_w >= -tolerance && check.complementarity <= tolerance;
     check
+}
+
+/// Every w_i of a bare LCP.
+pub fn rows(lcp: &MirroredLcp, z: &[f64]) -> Vec<Sum> {
+    (0..z.len()).map(|i| row(lcp, z, i)).collect()
 }
 
 /// w_i = q_i + Σ M_ij z_j in doubled precision, of a bare LCP.

@@ -17,6 +17,8 @@
 
 use std::time::Instant;
 
+use nalgebra::DVector;
+
 use super::exact_certificate::certify_exactly;
 use super::exact_equations::{Equations, Solved};
 use super::known_normals::with_known_normals;
@@ -29,7 +31,6 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::sum::Sum;
 use crate::lcp::exact::dyadic::Dyadic;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
-use nalgebra::DVector;
 
 /// A margin below this share of the motion is looked at more closely: the program cannot tell it from 0.
 const UNCLEAR: f64 = 1e-5;

@@ -10,6 +10,7 @@ use super::mode::PartMotion;
 use super::motions::FreeMotions;
 use super::rigid::{RigidMotion, direction_word};
 use crate::contact::problem::ContactProblem;
+use crate::text::number::rounded;
 use crate::text::words::short;
 use crate::watch::{Budget, Watch};
 
@@ -213,15 +214,14 @@ impl RemedySearch<'_> {
 
 /// Six digits, trailing zeros dropped: limits deserve more than running text.
 pub fn digits(value: f64) -> String {
-    rounded(value, 6)
+    written(value, 6)
 }
 
-fn rounded(value: f64, digits: usize) -> String {
+fn written(value: f64, digits: usize) -> String {
     if value.is_infinite() {
         return if value > 0.0 { "∞" } else { "-∞" }.to_owned();
     }
-    let text = format!("{value:.*e}", digits - 1);
-    let rounded: f64 = text.parse().unwrap_or(value);
+    let rounded = rounded(value, digits);
     let rounded = if rounded.abs() < 1e-9 && digits == 6 { 0.0 } else { rounded };
     format!("{rounded}")
 }
@@ -229,7 +229,7 @@ fn rounded(value: f64, digits: usize) -> String {
 /// Two numbers with as many digits, six at least, as it takes to tell them apart.
 pub fn told_apart(a: f64, b: f64) -> (String, String) {
     (6..17)
-        .map(|digits| (rounded(a, digits), rounded(b, digits)))
+        .map(|digits| (written(a, digits), written(b, digits)))
         .find(|(a, b)| a != b)
         .unwrap_or_else(|| (format!("{a}"), format!("{b}")))
 }

@@ -6,7 +6,8 @@ use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
 
 /// Numbers of the nodal components ("base dofs"): the translations at every node, rotations where a frame bar is
-/// rigidly attached, at the nodes of rigid bodies and at [hinges that something holds](held_hinges); of a superelement the components of its rows.
+/// rigidly attached, at the nodes of rigid bodies and at [hinges that something holds](held_hinges); of a superelement the
+/// components of its rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dofs {
     first: Vec<u32>,

@@ -5,8 +5,8 @@
 
 /// Below this share of √(A_ii A_jj): elimination and transformations in f64 leave some ε times the size of what they add up.
 const LEFT: f64 = 1024.0 * f64::EPSILON;
-/// Whole and short numbers are meant as they stand.
-const SHORT: usize = 9;
+/// Whole numbers, and others of no more digits than this, are meant as they stand.
+pub const SHORT: usize = 9;
 
 /// Digits of a number as it is printed shortest.
 pub fn digits(value: f64) -> usize {

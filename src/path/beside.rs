@@ -5,6 +5,7 @@ use super::start::PathError;
 use crate::model::rules::Rules;
 use crate::solve::problem::factors;
 use crate::solve::{Case, Prepared, Solved};
+use crate::text::number::rounded;
 
 /// The end of a path is confirmed by runs of their own at (1 ± this) of it.
 pub(super) const BESIDE: f64 = 1e-6;
@@ -76,11 +77,5 @@ pub(super) fn search(name: &str, from: f64, reach: f64) -> String {
 
 /// With nine significant digits, which tell apart what lies [`BESIDE`] from one another.
 pub(super) fn nine_digits(value: f64) -> f64 {
-    digits(value, 9)
-}
-
-/// With so many significant digits.
-pub(super) fn digits(value: f64, count: usize) -> f64 {
-    let after_the_first = count - 1;
-    format!("{value:.after_the_first$e}").parse().unwrap_or(value)
+    rounded(value, 9)
 }

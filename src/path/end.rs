@@ -1,8 +1,9 @@
 //! Why a path ends.
 
-use super::beside::{digits, nine_digits};
+use super::beside::nine_digits;
 use crate::answer::record::Ray;
 use crate::lcp::outcome::RayDirection;
+use crate::text::number::rounded;
 use crate::text::words::short;
 
 /// Why a path over a load or over friction ends.
@@ -58,7 +59,7 @@ impl PathEnd {
             PathEnd::AnswerBeyond(beyond) => {
                 format!(
                     "the path ends at {name} = {end}, but just beyond, at {name} = {}, an answer exists",
-                    digits(*beyond, 12)
+                    rounded(*beyond, 12)
                 )
             }
             PathEnd::Unbounded => format!("beyond {name} = {at} nothing changes any more, however large the load"),

@@ -2,6 +2,7 @@
 
 use super::sample::draw::Draw;
 use crate::model::scenario::Scenario;
+use crate::text::number::rounded;
 
 /// No axis has more points than this.
 const MOST: f64 = 1e7;
@@ -56,8 +57,7 @@ fn tidy(value: f64, step: f64) -> f64 {
     if value.abs() <= 1e-9 * step.abs() {
         return 0.0;
     }
-    // A number printed this way is always read back.
-    format!("{value:.12e}").parse().unwrap_or(value)
+    rounded(value, 13)
 }
 
 impl Axis {

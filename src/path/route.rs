@@ -77,8 +77,8 @@ impl<'a> Route<'a> {
         Ok(route.filter(|route| route.legs.iter().all(|leg| leg.way.end().answer_beyond().is_none())))
     }
 
-    /// The same, to the end of a path, from an answer that `solve` finds, looking for a start at the upper end first where that is wanted: where there
-    /// are several answers it may be another one.
+    /// The same, to the end of a path, from an answer that `solve` finds, looking for a start at the upper end first where that
+    /// is wanted: where there are several answers it may be another one.
     ///
     /// # Errors
     /// As [`Route::new`].

@@ -33,7 +33,7 @@ const CONVEX: f64 = 2.0;
 ///
 /// # Errors
 /// Interrupted.
-pub(super) fn descent(lcp: &Arc<MirroredLcp>, watch: &dyn Watch) -> Result<Option<Vec<f64>>, SolveError> {
+pub(super) fn descent(lcp: &MirroredLcp, watch: &dyn Watch) -> Result<Option<Vec<f64>>, SolveError> {
     let Some(x) = variables(lcp) else { return Ok(None) };
     let curvature = DMatrix::from_fn(x.len(), x.len(), |i, j| lcp.base[(x[i], x[j])]);
     let Some(least) = smallest_eigenvalue(&curvature).filter(|least| *least < 0.0) else { return Ok(None) };

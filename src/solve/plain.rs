@@ -14,7 +14,7 @@ use super::settle::{ray_holds, settled};
 use super::state::{LookedAt, RunData, Solved};
 use crate::answer::attempt::{AttemptCovering, AttemptEngine, AttemptRules, PlainCovering};
 use crate::answer::check::TOLERANCE;
-use crate::answer::check_plain::{ROW_ROUNDING, check_plain, row};
+use crate::answer::check_plain::{ROW_ROUNDING, check_rows, rows};
 use crate::answer::record::{Answer, OutcomeKind, PlainSolution, Ray, Size, Verdict};
 use crate::contact::sum::HIDDEN;
 use crate::explain::plain_ray::PlainRay;
@@ -32,9 +32,11 @@ use crate::watch::{Budget, Watch};
 /// What is said of the answers where nothing was proved.
 const UNKNOWN: &str = "For a general M this proves nothing about whether one exists.";
 /// Finds z of an LCP of some class, which the caller checks; `None` where it is not of that class, or none was found.
-type Special = fn(&MirroredLcp, &dyn Watch) -> Result<Option<Vec<f64>>, SolveError>;
-/// Ways to an answer that fit the data of some LCPs only, and what is said of it.
-const SPECIAL: [(AttemptEngine, Special, &str); 2] = [
+type Find = fn(&MirroredLcp, &dyn Watch) -> Result<Option<Vec<f64>>, SolveError>;
+/// A way to an answer that fits the data of some LCPs only, and what is said of it.
+type Special = (AttemptEngine, Find, &'static str);
+/// Those that are tried first.
+const SPECIAL: [Special; 2] = [
     (
         AttemptEngine::Substitution,
         by_substitution,
@@ -46,9 +48,13 @@ const SPECIAL: [(AttemptEngine, Special, &str); 2] = [
         "this is a bimatrix game; stated with the players' values as unknowns Lemke's algorithm finds an equilibrium",
     ),
 ];
-/// What is said of an answer by descent.
-const DESCENT: &str = "these are the first-order conditions of a quadratic program that is not convex: steps down it, each convex and \
-                       solved by Lemke's algorithm, end here; another answer may lie lower";
+/// The one that is tried where other coverings lead to nothing.
+const DESCENT: Special = (
+    AttemptEngine::Descent,
+    descent,
+    "these are the first-order conditions of a quadratic program that is not convex: steps down it, each convex and solved by \
+     Lemke's algorithm, end here; another answer may lie lower",
+);
 /// What is said of an answer so far away that rounding hides q there.
 const FAR: &str = "z is so large that the rounding of M z hides q: an answer of the numbers as they are written, which may be none if \
                    they were rounded, as a motion that nothing resists makes it";
@@ -163,10 +169,8 @@ pub(super) fn attempt_plain(
     if answer.is_answer() {
         // A marginal answer holds only up to the p that was left.
         let tolerance = if marginal { TOLERANCE } else { ROW_ROUNDING };
-        answer.check = check_plain(&lcp, &run.point.z, tolerance);
-        if answer.check.passed {
-            judge_rounding(&mut answer, &lcp);
-        } else {
+        check(&mut answer, &lcp, tolerance);
+        if !answer.check.passed {
             fail_check(&mut answer);
         }
     }
@@ -210,15 +214,13 @@ pub(super) fn solve_plain_judged(
 /// Proofs that there is no answer, then other rules, then all bases; the first answer wins. Without one the first run
 /// is shown, with what was proved.
 fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn Watch) -> Result<Solved, SolveError> {
-    for (engine, special, note) in SPECIAL {
-        let Some(z) = special(&problem.lcp, watch)? else { continue };
-        let found = plain_answer(&problem.lcp, &z, AttemptRules::from(own).by(engine));
-        let mut ladder = Ladder::new(first);
-        match ladder.first_answer(std::iter::once(Ok(found)), Some(note.to_owned()))? {
-            Some(answer) => return Ok(answer),
-            None => first = ladder.without_answer(),
+    let mut ladder = Ladder::new(first);
+    for special in SPECIAL {
+        if let Some(answer) = specially(problem, &mut ladder, (special, own), watch)? {
+            return Ok(answer);
         }
     }
+    first = ladder.without_answer();
     if let (Some(ray), RunData::Plain { lcp, pivots }) = (&mut first.plain_ray, &first.run) {
         ray.exact = ray_holds(lcp, &pivots.basis(), ray.entering, &Budget::new(watch, EXACT_BUDGET));
         first.answer.ray = Some(ray.record(Verdict::Undecided, UNKNOWN));
@@ -265,13 +267,22 @@ fn retry(problem: &PlainProblem, mut first: Solved, own: PlainRules, watch: &dyn
     if let Some(solved) = ladder.climb(&rungs, budget, watch, &attempt, &proved)? {
         return Ok(solved);
     }
-    if let Some(z) = descent(&problem.lcp, watch)? {
-        let found = plain_answer(&problem.lcp, &z, AttemptRules::from(own).by(AttemptEngine::Descent));
-        if let Some(answer) = ladder.first_answer(std::iter::once(Ok(found)), Some(DESCENT.to_owned()))? {
-            return Ok(answer);
-        }
+    if let Some(answer) = specially(problem, &mut ladder, (DESCENT, own), watch)? {
+        return Ok(answer);
     }
     by_all_bases(problem, ladder, found, own, watch)
+}
+
+/// The answer that a special way leads to.
+fn specially(
+    problem: &PlainProblem,
+    ladder: &mut Ladder,
+    ((engine, find, note), own): (Special, PlainRules),
+    watch: &dyn Watch,
+) -> Result<Option<Solved>, SolveError> {
+    let Some(z) = find(&problem.lcp, watch)? else { return Ok(None) };
+    let found = plain_answer(&problem.lcp, &z, AttemptRules::from(own).by(engine));
+    ladder.first_answer(std::iter::once(Ok(found)), Some(note.to_owned()))
 }
 
 /// The first answer among all bases, searched more patiently where a brief search came to no end; or what no answer among
@@ -323,15 +334,12 @@ fn by_substitution(lcp: &MirroredLcp, watch: &dyn Watch) -> Result<Option<Vec<f6
 pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], rules: AttemptRules) -> Solved {
     let w = lcp.times(z) + &lcp.q;
     let point = Point { w: w.iter().copied().collect(), z: z.to_vec(), p: 0.0 };
-    let check = check_plain(lcp, &point.z, ROW_ROUNDING);
     let run = Run { outcome: Outcome::Normal { marginal: false }, pivots: PivotLog::default(), point };
     let size = Size { lcp: lcp.size(), ..Size::default() };
     let mut answer = empty_answer(&run, 1.0, rules, size);
-    answer.check = check;
     answer.solution = Some(PlainSolution { z: run.point.z, w: run.point.w });
-    if answer.check.passed {
-        judge_rounding(&mut answer, lcp);
-    } else {
+    check(&mut answer, lcp, ROW_ROUNDING);
+    if !answer.check.passed {
         answer.outcome = OutcomeKind::CheckFailed;
     }
     Solved {
@@ -347,15 +355,18 @@ pub(super) fn plain_answer(lcp: &Arc<MirroredLcp>, z: &[f64], rules: AttemptRule
     }
 }
 
-/// Of an answer that passed: w that is rounding of its own terms is 0, and z beside which rounding hides q is told.
-fn judge_rounding(answer: &mut Answer, lcp: &MirroredLcp) {
+/// Checks what was found. Where it passes, w that is rounding of its own terms is 0, and z beside which rounding hides q is told.
+fn check(answer: &mut Answer, lcp: &MirroredLcp, tolerance: f64) {
     let Some(PlainSolution { z, w }) = &mut answer.solution else { return };
-    let mut largest = 0.0;
-    for (i, w) in w.iter_mut().enumerate() {
-        let sum = row(lcp, z, i);
-        *w = if sum.relative().abs() <= ROW_ROUNDING { 0.0 } else { sum.value() };
-        largest = f64::max(largest, sum.magnitude());
+    let rows = rows(lcp, z);
+    answer.check = check_rows(&rows, z, tolerance);
+    if !answer.check.passed {
+        return;
     }
+    for (w, row) in w.iter_mut().zip(&rows) {
+        *w = if row.relative().abs() <= ROW_ROUNDING { 0.0 } else { row.value() };
+    }
+    let largest = rows.iter().map(|row| row.magnitude()).fold(0.0, f64::max);
     if ROW_ROUNDING * largest > HIDDEN * lcp.q.amax() {
         answer.notes.push(FAR.to_owned());
     }

@@ -24,6 +24,13 @@ pub fn in_full(value: f64) -> String {
     }
 }
 
+/// The number that a value is with so many significant digits, one at least: without the dust of binary fractions.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    let after_the_first = digits.saturating_sub(1);
+    // A finite number printed this way is always read back.
+    format!("{value:.after_the_first$e}").parse().unwrap_or(value)
+}
+
 /// A check figure: two significant digits with an exponent, `2.2e-16`.
 pub fn residual(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {

@@ -1,6 +1,7 @@
 //! Sliders: what a step is, and which value a place on the slider means.
 
 use crate::model::parameter::Parameter;
+use crate::text::number::rounded;
 
 /// The step of a slider: the file's, or a fiftieth of the range, or a twentieth of the value.
 pub fn step(value: f64, parameter: &Parameter) -> f64 {
@@ -63,7 +64,7 @@ fn tidy(value: f64, step: f64) -> f64 {
     if value.abs() < 1e-9 * step {
         return 0.0;
     }
-    format!("{value:.11e}").parse().unwrap_or(value)
+    rounded(value, 12)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::style::{Role, Style};
 use crate::contact::polygon::{Polygon, angle, degrees};
 use crate::contact::schemes::critical::{Coverage, CriticalFriction};
 use crate::contact::schemes::scheme::{PairScheme, Tangential};
-use crate::text::number::short;
+use crate::text::number::{rounded, short};
 
 /// "c1 open, c2 slip+".
 pub fn scheme_words(ids: &[&str], scheme: &[PairScheme], polygon: Polygon) -> String {
@@ -70,7 +70,7 @@ pub fn sentence(parameter: &str, found: &CriticalFriction, ids: &[&str]) -> Stri
 
 /// Ten significant digits without trailing zeros.
 fn precise(value: f64) -> String {
-    let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(value);
+    let rounded = rounded(value, 10);
     if (1e-4..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { short(value) }
 }
 

@@ -241,22 +241,28 @@ fn k_and_f_come_back_as_a_superelement() {
     assert!(same.len() >= 12 && !refused.is_empty(), "{same:?} {refused:?}");
 }
 
+/// A session over a scenario, and one over what its `export stiffness` writes.
+fn there_and_back(text: &str) -> [Session; 2] {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let session =
+        |name: &str| Session::new(load_file(&at(name)).unwrap_or_else(|e| panic!("{e}")), &Quiet).expect("solved");
+    fs::write(at("a.json"), text).expect("a file");
+    let mut first = session("a.json");
+    run(&mut first, &format!("export stiffness '{}'", at("b.json").display())).expect("written");
+    [first, session("b.json")]
+}
+
 /// A cantilever under a force at its end stores F² L³/6EI, as it is and as a superelement.
 #[test]
 fn a_superelement_stores_as_much() {
-    let folder = tempfile::tempdir().expect("a folder");
     let text = r#"{ "format": "stickslip/1", "title": "Cantilever",
         "materials": {"m": {"E": 200, "nu": 0.2}}, "sections": {"s": {"area": 1, "inertia": 1}},
         "nodes": {"A": [0, 0], "B": [4, 0]},
         "bars": [{"id": "AB", "nodes": ["A", "B"], "material": "m", "section": "s", "divisions": 2}],
         "supports": [{"at": "A", "fixed": ["x", "y", "r"]}],
         "loads": {"q": {"items": [{"point": {"at": "B", "force": [0, -3]}}]}} }"#;
-    let scenario = folder.path().join("a.json");
-    fs::write(&scenario, text).expect("a file");
-    let mut session = Session::new(load_file(&scenario).unwrap_or_else(|e| panic!("{e}")), &Quiet).expect("solved");
-    run(&mut session, &format!("export stiffness '{}/b.json'", folder.path().display())).expect("written");
-    let back = load_file(&folder.path().join("b.json")).unwrap_or_else(|e| panic!("{e}"));
-    let back = Session::new(back, &Quiet).expect("solved");
+    let [session, back] = there_and_back(text);
     for mut session in [session, back] {
         let shown = lines::report(&mut session, "show energy").unwrap_or_else(|e| panic!("{e}"));
         let energy = shown[0]["value"].as_f64().expect("a number");
@@ -268,7 +274,6 @@ fn a_superelement_stores_as_much() {
 /// through the spring, C is turned and pulls D, E is held, F and G would turn by themselves. With M_D = k φ/(1 + k L/3EI).
 #[test]
 fn rotations_at_hinges_come_back() {
-    let folder = tempfile::tempdir().expect("a folder");
     let text = r#"{ "format": "stickslip/1", "title": "Hinges",
         "materials": {"m": {"E": 200, "nu": 0.2}}, "sections": {"s": {"area": 1, "inertia": 1}},
         "nodes": {"A": [0, 0], "B": [4, 0], "C": [0, 2], "D": [4, 2], "E": [0, 4], "F": [4, 4], "G": [8, 4]},
@@ -284,12 +289,7 @@ fn rotations_at_hinges_come_back() {
         "springs": [{"between": ["A", "B"], "rotation": 30}, {"between": ["C", "D"], "rotation": 30},
                     {"between": ["F", "G"], "rotation": 5}, {"at": "E", "rotation": 7}],
         "loads": {"q": {"items": [{"line": {"bar": "AB", "value": [0, -2]}}]}} }"#;
-    let scenario = folder.path().join("a.json");
-    fs::write(&scenario, text).expect("a file");
-    let mut session = Session::new(load_file(&scenario).unwrap_or_else(|e| panic!("{e}")), &Quiet).expect("solved");
-    run(&mut session, &format!("export stiffness '{}/b.json'", folder.path().display())).expect("written");
-    let back = load_file(&folder.path().join("b.json")).unwrap_or_else(|e| panic!("{e}"));
-    let back = Session::new(back, &Quiet).expect("solved");
+    let [session, back] = there_and_back(text);
     for session in [&session, &back] {
         let turns = answer(session).displacements.as_ref().expect("u");
         let near = |node: usize, right: f64| {

@@ -8,10 +8,8 @@ use nalgebra::DMatrix;
 
 use super::error::GivenError;
 use crate::contact::pivoted::DIGITS;
-use crate::model::left_by_rounding::{digits, is_left_by_rounding};
+use crate::model::left_by_rounding::{SHORT, digits, is_left_by_rounding};
 
-/// A matrix without a longer entry than this has whole or short numbers, which are meant as they stand.
-const SHORT: usize = 9;
 /// Digits that an f64 has.
 const MOST: usize = 17;
 

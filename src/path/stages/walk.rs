@@ -292,7 +292,9 @@ impl<'a> Follower<'a> for Walk<'a> {
                 }
                 Stretch::End { motion, p } => match self.beyond(course, t, (&motion, p), &mut way)? {
                     Ok(to) => {
-                        began = if jumps == 0 { t } else { began };
+                        if jumps == 0 {
+                            began = t;
+                        }
                         jumps += 1;
                         to
                     }
