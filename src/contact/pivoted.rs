@@ -160,14 +160,19 @@ impl PivotedCholesky {
             let size = |i: usize| z[i].abs() * self.scale[i];
             let largest = (0..z.len()).map(size).fold(0.0, f64::max);
             let simple = DVector::from_fn(z.len(), |i, _| if size(i) <= f64::EPSILON * largest { 0.0 } else { z[i] });
-            if is_null(matrix, &simple) {
+            if self.is_null(matrix, &simple) {
                 return (simple, true);
             }
-            if simple != z && is_null(matrix, &z) {
+            if simple != z && self.is_null(matrix, &z) {
                 return (z, true);
             }
         }
         (z, false)
+    }
+
+    /// [`is_null`] of a vector that solves the independent rows: the others tell first that it is not.
+    fn is_null(&self, matrix: &DMatrix<f64>, z: &DVector<f64>) -> bool {
+        self.order[self.rank..].iter().all(|&row| is_null_in(matrix, z, row)) && is_null(matrix, z)
     }
 }
 
@@ -231,20 +236,23 @@ fn finish_panel(l: &mut DMatrix<f64>, from: usize, to: usize) {
 
 /// Whether A z = 0 by the digits of A, row by row.
 pub fn is_null(matrix: &DMatrix<f64>, z: &DVector<f64>) -> bool {
+    (0..matrix.ncols()).all(|row| is_null_in(matrix, z, row))
+}
+
+/// The same of one row.
+fn is_null_in(matrix: &DMatrix<f64>, z: &DVector<f64>, row: usize) -> bool {
     // Smaller terms may have lost digits to underflow.
     const SMALLEST: f64 = 1e-270;
-    // What rounding can have made of the f64 sums below, and as much again for that of their magnitude.
+    let row = matrix.column(row);
+    let (sum, magnitude) = halved_sums(row.as_slice(), z.as_slice());
+    let beyond = sum.abs() - DIGITS * magnitude;
+    // What rounding can have made of these sums in f64, and as much again for that of their magnitude.
     let doubt = roundings(z.len()) * f64::EPSILON;
-    (0..matrix.ncols()).all(|row| {
-        let row = matrix.column(row);
-        let (sum, magnitude) = halved_sums(row.as_slice(), z.as_slice());
-        let beyond = sum.abs() - DIGITS * magnitude;
-        if magnitude.is_finite() && magnitude > SMALLEST && beyond.abs() > doubt * magnitude {
-            return beyond < 0.0;
-        }
-        let sum = sum_of_products(0.0, row.iter().zip(z.iter()));
-        sum.value().abs() <= DIGITS * sum.magnitude()
-    })
+    if magnitude.is_finite() && magnitude > SMALLEST && beyond.abs() > doubt * magnitude {
+        return beyond < 0.0;
+    }
+    let sum = sum_of_products(0.0, row.iter().zip(z.iter()));
+    sum.value().abs() <= DIGITS * sum.magnitude()
 }
 
 /// Orthonormal basis of the span of some vectors of length n; nearly dependent ones count once.

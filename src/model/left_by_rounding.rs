@@ -15,5 +15,10 @@ pub fn digits(value: f64) -> usize {
 
 /// Whether an entry off the diagonal, which has the given roots √A_ii and √A_jj, may be rounding.
 pub fn is_left_by_rounding(entry: f64, roots: [f64; 2]) -> bool {
-    entry != 0.0 && entry.abs() <= LEFT * roots[0] * roots[1] && digits(entry) > SHORT
+    is_small(entry, roots) && digits(entry) > SHORT
+}
+
+/// Whether it is small enough for that, and not zero.
+pub fn is_small(entry: f64, roots: [f64; 2]) -> bool {
+    (entry != 0.0) & (entry.abs() <= LEFT * roots[0] * roots[1])
 }

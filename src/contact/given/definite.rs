@@ -8,17 +8,35 @@ use nalgebra::DMatrix;
 
 use super::error::GivenError;
 use crate::contact::pivoted::DIGITS;
-use crate::model::left_by_rounding::{SHORT, digits, is_left_by_rounding};
+use crate::model::left_by_rounding::{SHORT, digits, is_left_by_rounding, is_small};
 
 /// Digits that an f64 has.
 const MOST: usize = 17;
 
-/// The matrix with zeros where its entries may be [rounding](is_left_by_rounding); `None` where none is.
-pub(super) fn without_rounding(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+/// Takes the entries below the diagonal that may be [rounding](is_left_by_rounding), and their twins above it, out of a
+/// symmetric matrix.
+pub(super) fn take_rounding(matrix: &mut DMatrix<f64>) -> Vec<(usize, usize, f64)> {
     let roots: Vec<f64> = matrix.diagonal().iter().map(|entry| entry.max(0.0).sqrt()).collect();
-    let is_left = |i: usize, j: usize, entry: f64| i != j && is_left_by_rounding(entry, [roots[i], roots[j]]);
-    let cleared = matrix.map_with_location(|i, j, entry| if is_left(i, j, entry) { 0.0 } else { entry });
-    (cleared != *matrix).then_some(cleared)
+    let mut taken = Vec::new();
+    for (j, column) in matrix.column_iter().enumerate() {
+        let (below, root) = (&column.as_slice()[j + 1..], roots[j]);
+        let may_be_left = |(entry, other): (&f64, &f64)| is_small(*entry, [root, *other]);
+        // A column at a time: most have none.
+        if below.iter().zip(&roots[j + 1..]).fold(false, |any, one| any | may_be_left(one)) {
+            let below = (j + 1..column.len()).map(|i| (i, j, column[i]));
+            taken.extend(below.filter(|&(i, _, entry)| is_left_by_rounding(entry, [roots[i], root])));
+        }
+    }
+    set_entries(matrix, &taken, |_| 0.0);
+    taken
+}
+
+/// Sets entries of a symmetric matrix, on both sides of the diagonal, to what is made of their values.
+pub(super) fn set_entries(matrix: &mut DMatrix<f64>, entries: &[(usize, usize, f64)], value: impl Fn(f64) -> f64) {
+    for &(i, j, entry) in entries {
+        matrix[(i, j)] = value(entry);
+        matrix[(j, i)] = value(entry);
+    }
 }
 
 /// Half a unit of the last digit of the longest entry, relative: how far each entry may be from what was printed.
@@ -45,8 +63,15 @@ pub(super) fn judge_entries(
     // Squares underflow and overflow; roots of the diagonal do not.
     let roots: Vec<f64> = matrix.diagonal().iter().map(|entry| entry.sqrt()).collect();
     let beyond = |most: f64| {
-        let entries = (0..n).flat_map(|j| (j + 1..n).map(move |i| (i, j)));
-        entries.map(|(i, j)| (i, j, roots[i] * roots[j])).find(|&(i, j, bound)| matrix[(i, j)].abs() > most * bound)
+        (0..n).find_map(|j| {
+            let column = matrix.column(j);
+            let below = || column.as_slice()[j + 1..].iter().zip(&roots[j + 1..]);
+            let is_beyond = |(entry, root): (&f64, &f64)| entry.abs() > most * (root * roots[j]);
+            // A column at a time: there is nearly always nothing to find.
+            let has_any = below().fold(false, |any, one| any | is_beyond(one));
+            let i = j + 1 + has_any.then(|| below().position(is_beyond))??;
+            Some((i, j, roots[i] * roots[j]))
+        })
     };
     // How many digits the matrix has matters, and is looked at, only where it matters.
     if beyond(1.0 + DIGITS).is_some()

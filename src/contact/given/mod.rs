@@ -9,12 +9,12 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use self::definite::{judge_entries, without_rounding};
+use self::definite::{judge_entries, set_entries, take_rounding};
 pub use self::error::GivenError;
 use self::rows::{Rows, cleaned, joint_name, joints_in_words, pairs};
 use self::singular::{repeated_in_space, singular_compliance};
 use super::file_data::FileData;
-use super::pivoted::{DIGITS, NullSpace, PivotedCholesky, is_null, orthonormal};
+use super::pivoted::{DIGITS, NullSpace, PivotedCholesky, is_null, orthonormal, scales};
 use super::system::{ContactSystem, JointLoad};
 use crate::lcp::problem::NOISE;
 use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
@@ -45,9 +45,10 @@ pub fn given_system(given: &GivenContactSystem) -> Result<(ContactSystem, Vec<St
     }
 }
 
+/// The mean of a matrix and its transpose.
 fn symmetric(rows: &[Vec<f64>]) -> DMatrix<f64> {
     let n = rows.len();
-    let mut matrix = DMatrix::from_fn(n, n, |i, j| rows[j][i]);
+    let mut matrix = DMatrix::from_vec(n, n, rows.concat());
     // Square by square: of a whole row each entry lies on another page.
     for first in (0..n).step_by(SQUARE) {
         for below in (first..n).step_by(SQUARE) {
@@ -64,43 +65,41 @@ fn symmetric(rows: &[Vec<f64>]) -> DMatrix<f64> {
 }
 
 /// The null space of a matrix, refused where it is indefinite.
-fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<(PivotedCholesky, NullSpace), GivenError> {
+fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<NullSpace, GivenError> {
     let factor = PivotedCholesky::new(matrix);
     let null = factor.null_space(matrix);
     if null.least < -NEGATIVE {
-        let scale = &factor.scale;
+        let scale = factor.scale;
         let scaled = DMatrix::from_fn(scale.len(), scale.len(), |i, j| matrix[(i, j)] / scale[i] / scale[j]);
         // What the null space shows bounds it from above.
         return Err(GivenError::Indefinite { key, smallest: smallest_eigenvalue(&scaled).unwrap_or(null.least) });
     }
-    Ok((factor, null))
+    Ok(null)
 }
 
 /// A stiffness matrix with its null space. Where it is singular, or nearly so, entries that may be rounding are taken as that
-/// unless the motions of the whole are then fewer.
+/// unless the motions are then fewer.
 fn with_null_space(
-    matrix: DMatrix<f64>,
+    mut matrix: DMatrix<f64>,
     remarks: &mut Vec<String>,
-) -> Result<(DMatrix<f64>, PivotedCholesky, NullSpace), GivenError> {
-    let (whole, null) = null_space("stiffness", &matrix)?;
+) -> Result<(DMatrix<f64>, NullSpace), GivenError> {
+    let mut null = null_space("stiffness", &matrix)?;
     let is_regular = null.exact.is_empty() && null.near.is_empty();
-    if !is_regular && let Some(cleared) = without_rounding(&matrix) {
-        let (factor, motions) = null_space("stiffness", &cleared)?;
-        if motions.exact.len() >= null.exact.len() && motions.near.len() <= null.near.len() {
-            // Each entry stands on both sides of the diagonal.
-            let count = matrix.iter().zip(cleared.iter()).filter(|(given, taken)| given != taken).count() / 2;
-            let entries = if count == 1 {
-                "entry of the contact stiffness matrix is"
-            } else {
-                "entries of the contact stiffness matrix are"
+    let taken = if is_regular { Vec::new() } else { take_rounding(&mut matrix) };
+    if !taken.is_empty() {
+        let of_rest = null_space("stiffness", &matrix)?;
+        if of_rest.exact.len() >= null.exact.len() && of_rest.near.len() <= null.near.len() {
+            let entries = match taken.len() {
+                1 => "1 entry of the contact stiffness matrix is".to_owned(),
+                count => format!("{count} entries of the contact stiffness matrix are"),
             };
-            remarks.push(format!(
-                "{count} {entries} what rounding leaves of zero: taken as 0, no free motion is held by that"
-            ));
-            return Ok((cleared, factor, motions));
+            remarks.push(format!("{entries} what rounding leaves of zero: taken as 0, no free motion is held by that"));
+            null = of_rest;
+        } else {
+            set_entries(&mut matrix, &taken, |entry| entry);
         }
     }
-    Ok((matrix, whole, null))
+    Ok((matrix, null))
 }
 
 fn from_stiffness(
@@ -118,8 +117,8 @@ fn from_stiffness(
             (motions, data)
         }
         None => {
-            let (matrix, whole, null) = with_null_space(matrix, &mut remarks)?;
-            remarks.extend(null.near.iter().map(|z| nearly_singular(given, z, &whole.scale)));
+            let (matrix, null) = with_null_space(matrix, &mut remarks)?;
+            remarks.extend(null.near.iter().map(|z| nearly_singular(given, z, &scales(&matrix))));
             if null.least < -DIGITS * matrix.nrows() as f64 {
                 remarks.push(format!(
                     "the contact stiffness matrix is not quite positive semidefinite: scaled to unit diagonal it has an eigenvalue of \
@@ -288,21 +287,41 @@ fn nearly_singular(given: &GivenContactSystem, z: &DVector<f64>, scale: &[f64]) 
 /// R with the motions exactly in its kernel: (I − Q Qᵀ) S (I − Q Qᵀ) scaled back, where S is R scaled to unit diagonal
 /// (by powers of two) and Q spans the scaled motions. Without the scaling the rounding of the stiffest joint would
 /// swamp the softest ones.
+///
+/// ```text
+///   = S − T Qᵀ − Q Tᵀ,   T = S Q − ½ Q (Qᵀ S Q)
+/// ```
 fn without_kernel(stiffness: &DMatrix<f64>, motions: &[DVector<f64>]) -> DMatrix<f64> {
     let n = stiffness.nrows();
-    let scale = super::pivoted::scales(stiffness);
-    let scaled = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] / scale[i] / scale[j]);
-    let motions: Vec<DVector<f64>> = motions.iter().map(|z| DVector::from_fn(n, |i, _| z[i] * scale[i])).collect();
+    let scale = DVector::from_vec(scales(stiffness));
+    let motions: Vec<DVector<f64>> = motions.iter().map(|z| z.component_mul(&scale)).collect();
     let q = orthonormal(&motions, n);
     if q.ncols() == n {
         return DMatrix::zeros(n, n);
     }
-    let left = &scaled - &q * (q.transpose() * &scaled);
-    let both = &left - (&left * &q) * q.transpose();
+    let rows_times = |mut matrix: DMatrix<f64>, factors: &DVector<f64>| {
+        matrix.column_iter_mut().for_each(|mut column| column.component_mul_assign(factors));
+        matrix
+    };
+    let inverse = scale.map(f64::recip);
+    let s_q = rows_times(stiffness * rows_times(q.clone(), &inverse), &inverse);
+    let t = &s_q - (&q * (q.transpose() * &s_q)) * 0.5;
+    // Scaled back before they are multiplied: what is subtracted has the scale of R.
+    let (q, t) = (rows_times(q, &scale), rows_times(t, &scale));
+    let mut rest = stiffness.clone();
+    for (j, mut column) in rest.column_iter_mut().enumerate() {
+        for (q, t) in q.column_iter().zip(t.column_iter()) {
+            let (q_j, t_j) = (q[j], t[j]);
+            let terms = q.as_slice().iter().zip(t.as_slice());
+            // The same sum for (i, j) and (j, i), to the last bit.
+            column.as_mut_slice().iter_mut().zip(terms).for_each(|(entry, (q, t))| *entry -= q * t_j + t * q_j);
+        }
+    }
     // A joint of which only rounding is left moves at no cost; no zero could be told from noise of its size.
-    let is_free = |i: usize| both[(i, i)] <= NOISE;
-    DMatrix::from_fn(n, n, |i, j| {
-        let entry = 0.5 * (both[(i, j)] + both[(j, i)]) * scale[i] * scale[j];
-        if is_free(i) || is_free(j) { 0.0 } else { entry }
-    })
+    let free: Vec<usize> = (0..n).filter(|&i| rest[(i, i)] * inverse[i] * inverse[i] <= NOISE).collect();
+    for i in free {
+        rest.row_mut(i).fill(0.0);
+        rest.column_mut(i).fill(0.0);
+    }
+    rest
 }
