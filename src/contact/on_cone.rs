@@ -154,6 +154,14 @@ impl<'a> OnCone<'a> {
         }
     }
 
+    /// An answer with as little as there can be, from displacements before, of motions that nothing resists.
+    pub fn least_moved(&self, mut answer: ConeAnswer, before: &DVector<f64>) -> ConeAnswer {
+        if let Some(z) = self.problem().least_moved((&answer.z, &answer.forces), before) {
+            answer.z = z;
+        }
+        answer
+    }
+
     /// The fresh check of displacements z and their forces.
     pub fn check(&self, z: &DVector<f64>, forces: &[Sum]) -> ConeCheck {
         ConeCheck::of(&self.problem(), z, forces)

@@ -166,6 +166,8 @@ impl<'a> Stepper<'a> {
             Err(ConeFailure::Stopped) => return Err(PathError::Interrupted),
             Err(ConeFailure::NotConverged { .. } | ConeFailure::NotFinite | ConeFailure::DoNotFit) => return Ok(None),
         };
+        // Slips count from there, normal displacements from zero.
+        let answer = OnCone::new(problem).least_moved(answer, &(from - slips_of(problem, from)));
         Ok(Some(Step::of(problem, from, JointState::on_cone(problem, answer))))
     }
 

@@ -11,6 +11,7 @@
 //! A pair has none, one or two tangential joints: the plane is the case of one.
 
 mod check;
+mod free;
 mod mixed;
 mod natural_map;
 mod newton;

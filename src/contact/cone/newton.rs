@@ -214,7 +214,14 @@ impl Equations {
                 }
             }
         }
-        let matrix = DMatrix::from_fn(n, n, |i, j| rows[(j, i)] / (root[moving[i]] * root[moving[j]]));
+        let mut matrix = DMatrix::from_fn(n, n, |i, j| rows[(j, i)] / (root[moving[i]] * root[moving[j]]));
+        if problem.kernel.ncols() > 0 {
+            let (forces, is_open) = (problem.forces(&problem.bending(z)), |i: usize| !map.branches[i].is_closed);
+            if let Some(free) = problem.free_motions(&forces, is_open, |joint| place[joint] < n) {
+                let free = DMatrix::from_fn(n, free.ncols(), |at, one| free[(moving[at], one)] * root[moving[at]]);
+                hold(&mut matrix, &free);
+            }
+        }
         let right = DVector::from_fn(n, |at, _| (right[at] - map.residual[moving[at]]) / root[moving[at]]);
         Equations { moving, matrix, right, root, held }
     }
@@ -234,6 +241,13 @@ impl Equations {
     fn damped(&self, norm: f64) -> Option<DVector<f64>> {
         Some(self.step(&damped(&self.matrix, &self.right, norm)?))
     }
+}
+
+/// Makes a matrix regular that is singular along some motions, from both sides: what it solves for has none of them.
+pub(super) fn hold(matrix: &mut DMatrix<f64>, motions: &DMatrix<f64>) {
+    let size = matrix.diagonal().amax();
+    let motions = motions.clone().qr().q();
+    *matrix += &motions * motions.transpose() * if size > 0.0 { size } else { 1.0 };
 }
 
 /// The step of Levenberg and Marquardt, damped the less the smaller the natural map is; it exists where the equations

@@ -9,6 +9,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::natural_map::Branch;
+use super::newton::hold;
 use super::{ConeProblem, Point, across, length};
 use crate::contact::sum::Sum;
 use crate::doubled::dot;
@@ -122,6 +123,11 @@ impl Rows {
                     matrix[(place[joint], place[other])] += bound.value / size * across(along, t, u);
                 }
             }
+        }
+        if problem.kernel.ncols() > 0
+            && let Some(free) = problem.free_motions(&forces, |i| z[i] > 0.0, |joint| place[joint] < n)
+        {
+            hold(&mut matrix, &free.select_rows(&self.joints));
         }
         let right = DVector::from_fn(n, |at, _| -self.residual[at]);
         let found = Factor::new(matrix).solve(&right)?;
