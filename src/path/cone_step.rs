@@ -1,6 +1,7 @@
 //! One step of a path in space, on Coulomb's cone: the answer of eq. (8) near another one, its slips counted from those where
 //! the step began.
 
+use std::borrow::Cow;
 use std::cell::Cell;
 
 use nalgebra::DVector;
@@ -92,7 +93,8 @@ impl<'a> Stepper<'a> {
         force: Option<&DVector<f64>>,
     ) -> Result<Result<Step, PolygonRay>, PathError> {
         let exact = force.and_then(|_| exactly_behind(&problem, from));
-        let mut problem = behind_slips(problem, from);
+        let whole = problem;
+        let mut problem = behind_slips(whole.clone(), from);
         let mut facets = self.facets;
         loop {
             problem = problem.with_polygon(Polygon::regular(facets, 0.0));
@@ -116,29 +118,32 @@ impl<'a> Stepper<'a> {
             });
             if facets >= FINEST {
                 let Some(force) = force else { return Ok(Err(ray)) };
-                return Ok(self.beyond_a_jump((&problem, exact.as_ref()), from, force)?.ok_or(ray));
+                return Ok(self.beyond_a_jump(&whole, (from, force))?.ok_or(ray));
             }
             facets *= 2;
         }
     }
 
-    /// The answer at which a structure comes to rest that moves on from a state without an answer near it.
+    /// The answer at which a structure comes to rest that moves on from a state without an answer near it. Friction stands
+    /// against what moves at the time, not against all of the way.
     fn beyond_a_jump(
         &self,
-        (problem, exact): (&ContactProblem, Option<&ContactProblem>),
-        from: &DVector<f64>,
-        force: &DVector<f64>,
+        problem: &ContactProblem,
+        (from, force): (&DVector<f64>, &DVector<f64>),
     ) -> Result<Option<Step>, PathError> {
-        let start = (from - slips_of(problem, from), force.clone());
-        let at_rest = |(z, force): &Place| match exact {
-            Some(exact) => {
-                let pairs = cone_pairs(exact);
-                let found = self.mixed((problem, &MixedProblem::new(exact, &pairs)), z, force)?;
-                Ok(found.map(|found| Step::of_mixed(problem, from, found)))
-            }
-            None => self.taken(problem, from, OnCone::new(problem).nearby(z, self.watch)),
-        };
-        resisted(exact.unwrap_or(problem), start, self.watch, &at_rest)
+        let start = (from.clone(), force.clone());
+        if let Some(exact) = exactly_behind(problem, from) {
+            let (problem, shift) = (behind_slips(problem.clone(), from), slips_of(problem, from));
+            let pairs = cone_pairs(&exact);
+            let at_rest = |(z, force): &Place| {
+                let found = self.mixed((&problem, &MixedProblem::new(&exact, &pairs)), &(z - &shift), force)?;
+                Ok(found.map(|found| Step::of_mixed(&problem, from, found)))
+            };
+            return resisted(&|_| (Cow::Borrowed(&exact), shift.clone()), start, self.watch, &at_rest);
+        }
+        let counted = |z: &DVector<f64>| (Cow::Owned(behind_slips(problem.clone(), z)), slips_of(problem, z));
+        let at_rest = |(z, _): &Place| self.near(problem.clone(), z, z);
+        resisted(&counted, start, self.watch, &at_rest)
     }
 
     fn newton(

@@ -10,6 +10,7 @@
 //! With a large c there is one answer and it is near; from one step to the next c gets smaller, and what comes to rest is an
 //! answer of the structure alone.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use nalgebra::DVector;
@@ -28,24 +29,30 @@ const MORE: f64 = 16.0;
 /// From this c on the structure may be near to where it comes to rest.
 const NEAR: f64 = 0.05;
 /// With this c nothing resists any more.
-const NONE: f64 = 1e-12;
+const NONE: f64 = 1e-8;
 /// Steps at most.
-const STEPS: usize = 64;
+const STEPS: usize = 256;
 
 /// Displacements and forces of all joints.
 pub(super) type Place = (DVector<f64>, DVector<f64>);
 
-/// Goes from a place on until `at_rest` finds an answer of the problem itself near by; `None` where it finds none. Joints
-/// that repeat one another are in force form.
-pub(super) fn resisted<T>(
-    problem: &ContactProblem,
+/// A problem, and the slips that its displacements count from.
+pub(super) type Counted<'a> = (Cow<'a, ContactProblem>, DVector<f64>);
+
+/// Goes from a place on until `at_rest` finds an answer of the problem itself near by; `None` where it finds none. `counted`
+/// is the problem whose friction stands against the motion from some displacements. Joints that repeat one another are in
+/// force form.
+pub(super) fn resisted<'a, T>(
+    counted: &dyn Fn(&DVector<f64>) -> Counted<'a>,
     mut place: Place,
     watch: &dyn Watch,
     at_rest: &dyn Fn(&Place) -> Result<Option<T>, PathError>,
 ) -> Result<Option<T>, PathError> {
     let mut c = 1.0;
     for _ in 0..STEPS {
-        match step(problem, &place, c, watch)? {
+        let (problem, shift) = counted(&place.0);
+        let from = (&place.0 - &shift, place.1.clone());
+        match step(&problem, &from, c, watch)?.map(|(z, force)| (z + shift, force)) {
             Some(next) => place = next,
             None => {
                 c *= MORE;
