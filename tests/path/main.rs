@@ -13,6 +13,7 @@ mod limit;
 mod limit_in_space;
 mod load;
 mod load_amounts;
+mod loose_in_space;
 mod map;
 mod map_in_space;
 mod pipes_in_space;
