@@ -49,10 +49,22 @@ pub struct Run {
     stands: bool,
 }
 
+/// How an answer is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// In space by the first polygon alone.
+    First,
+    /// In every way there is.
+    All,
+}
+
 impl Run {
     /// What a case solved at a value showed.
-    pub(super) fn of(value: f64, case: Case<'_>) -> Result<Run, PathError> {
-        let solved = case.solve_pairs()?;
+    pub(super) fn of(value: f64, case: Case<'_>, effort: Effort) -> Result<Run, PathError> {
+        let solved = match effort {
+            Effort::First => case.solve_at_first(),
+            Effort::All => case.solve_pairs(),
+        }?;
         let ray = solved.ray.as_ref();
         let (class, verdict) = (ray.map(|ray| ray.class), ray.and_then(|ray| ray.verdict));
         Ok(Run { value, outcome: solved.answer.outcome, class, verdict, stands: solved.stands(case.rules.cone) })
@@ -97,14 +109,15 @@ pub struct Edge {
 /// # Errors
 /// No answer anywhere in the range; see [`PathError`].
 pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result<Edge, PathError> {
-    let run = |value: f64| -> Result<Run, PathError> { Run::of(value, case.at(name, value)?.case(case)) };
+    let run =
+        |value: f64, effort| -> Result<Run, PathError> { Run::of(value, case.at(name, value)?.case(case), effort) };
     let [from, to] = if which == Which::Least { range } else { [range[1], range[0]] };
     let mut before: Vec<Run> = Vec::new();
     let mut answer = None;
     for k in 0..=CELLS {
         let share = k as f64 / CELLS as f64;
         case.watch.progress(&format!("{name} = {}", from + share * (to - from)), share);
-        let next = run(if k == CELLS { to } else { from + share * (to - from) })?;
+        let next = run(if k == CELLS { to } else { from + share * (to - from) }, Effort::All)?;
         if next.is_answer() {
             answer = Some(next);
             break;
@@ -154,8 +167,27 @@ pub(super) struct Bracket {
     pub(super) proof: Option<Run>,
 }
 
-/// The answer and the runs without one nearest to each other that further runs between them show.
+/// The answer and the runs without one nearest to each other that further runs between them show. In space the first polygons
+/// lead there; what they leave open is looked for in every way at the place they end at.
 pub(super) fn narrowed(
+    run: &dyn Fn(f64, Effort) -> Result<Run, PathError>,
+    answer: Run,
+    collapse: Run,
+    in_space: bool,
+) -> Result<Bracket, PathError> {
+    let thoroughly = |answer, collapse| narrowed_by(&|value| run(value, Effort::All), answer, collapse, in_space);
+    if !in_space {
+        return thoroughly(answer, collapse);
+    }
+    let bracket = narrowed_by(&|value| run(value, Effort::First), answer, collapse.clone(), true)?;
+    if bracket.none.is_proved() {
+        return Ok(bracket);
+    }
+    let none = run(bracket.none.value, Effort::All)?;
+    if none.is_answer() { thoroughly(none, collapse) } else { Ok(Bracket { none, ..bracket }) }
+}
+
+fn narrowed_by(
     run: &dyn Fn(f64) -> Result<Run, PathError>,
     mut answer: Run,
     mut collapse: Run,

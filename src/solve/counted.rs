@@ -52,6 +52,23 @@ impl Case<'_> {
         if solved.is_balanced() { Ok(solved) } else { self.solve_briefly() }
     }
 
+    /// As [`Case::solve_pairs`], by the first polygon alone in space: whether there is no answer, or only none that it leads
+    /// to, is left open unless it is certified.
+    ///
+    /// # Errors
+    /// As [`Case::solve`].
+    pub fn solve_at_first(self) -> Result<Solved, SolveError> {
+        let Case { scenario, prepared, values, rules, watch } = self;
+        let in_space = prepared.system().filter(|system| system.is_in_space() && rules.are_default());
+        let Some(system) = in_space.filter(|_| scenario.law_refusal(values).is_none()) else {
+            return self.solve_pairs();
+        };
+        let problem = contact_problem(system, &factors(prepared, values), values).under(rules);
+        let (mut solved, _) = prepared.first_run(&problem, (rules, Extent::Counted), watch)?;
+        solved.put_verdict();
+        if solved.is_balanced() { Ok(solved) } else { self.solve_briefly() }
+    }
+
     /// As [`Case::solve_pairs`], for callers that try many values close to where answers end: what is no answer is
     /// tried again in f64 only, and nothing at all is tried where a known collapse proves that there is none. Without
     /// an answer: the word for how the first run ended.
@@ -101,6 +118,13 @@ impl Solved {
     /// Coulomb's cone.
     pub fn if_answer(self, cone: bool) -> Result<Solved, &'static str> {
         if self.stands(cone) { Ok(self) } else { Err(self.answer.outcome.word()) }
+    }
+
+    /// What is proved of its ray, in its answer.
+    pub(super) fn put_verdict(&mut self) {
+        if let (Some(report), Some(ray)) = (&self.ray, &mut self.answer.ray) {
+            ray.verdict = report.verdict;
+        }
     }
 
     /// Whether nothing is left to check, or the forces balance at every node.

@@ -64,19 +64,10 @@ impl Prepared {
     ) -> Result<Solved, SolveError> {
         let problem = contact_problem(system, &factors(self, values), values).under(rules);
         let job = Job { prepared: self, problem: &problem, rules, watch };
-        let mut solved = self.attempt_contact(&problem, (rules, extent), watch)?;
+        let (mut solved, certified) = self.first_run(&problem, (rules, extent), watch)?;
         if solved.stands(rules.cone) {
             return Ok(solved);
         }
-        let certified = match solved.ray.as_mut() {
-            Some(report) => certify_ray(report, &problem, self.built()),
-            // An answer on the polygon that Newton's method did not take to the cone, or dependent joints whose forces
-            // grow without end, which end in a failed check.
-            None => {
-                (solved.answer.is_answer() || system.yielding.is_some())
-                    && self.collapses_on_cone(&mut solved, &problem, rules.covering)
-            }
-        };
         if !certified && system.is_in_space() {
             if rules.are_default() {
                 solved = self.retry_in_space(&problem, rules, solved, watch)?;
@@ -88,9 +79,7 @@ impl Prepared {
         } else if !certified {
             job.compare_with_default(&mut solved)?;
         }
-        if let (Some(report), Some(ray)) = (&solved.ray, &mut solved.answer.ray) {
-            ray.verdict = report.verdict;
-        }
+        solved.put_verdict();
         if let Some(report) = solved.ray.as_mut().filter(|_| !brief) {
             explain(report, &problem, self.built());
             if watch.stop() {
@@ -109,6 +98,32 @@ impl Prepared {
 }
 
 impl Prepared {
+    /// The first run, and whether it is certified that there is no answer.
+    ///
+    /// # Errors
+    /// Those of the attempt.
+    pub(super) fn first_run(
+        &self,
+        problem: &ContactProblem,
+        (rules, extent): (Rules, Extent),
+        watch: &dyn Watch,
+    ) -> Result<(Solved, bool), SolveError> {
+        let mut solved = self.attempt_contact(problem, (rules, extent), watch)?;
+        if solved.stands(rules.cone) {
+            return Ok((solved, false));
+        }
+        let certified = match solved.ray.as_mut() {
+            Some(report) => certify_ray(report, problem, self.built()),
+            // An answer on the polygon that Newton's method did not take to the cone, or dependent joints whose forces
+            // grow without end, which end in a failed check.
+            None => {
+                (solved.answer.is_answer() || problem.system.yielding.is_some())
+                    && self.collapses_on_cone(&mut solved, problem, rules.covering)
+            }
+        };
+        Ok((solved, certified))
+    }
+
     /// The first of the first run and the retries in f64 that is an answer, with its pairs alone; else the first run.
     /// Where it is certified that there is no answer, no retry is made, and the motion that proves it becomes a known
     /// one.

@@ -6,7 +6,7 @@ use nalgebra::DVector;
 use super::record::Limit;
 use crate::contact::sum::LAW_ROUNDING;
 use crate::path::beside::{size, there};
-use crate::path::edge::{Bracket, CLOSE, Run, narrowed};
+use crate::path::edge::{Bracket, CLOSE, Effort, Run, narrowed};
 use crate::path::load_parameter::LoadParameter;
 use crate::path::start::PathError;
 use crate::solve::problem::factors;
@@ -25,11 +25,12 @@ pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathErr
         return Err(PathError::Idle(parameter.name));
     }
     let prepared_at = |value: f64| there(&parameter, grown.is_some(), case, value).map(|(prepared, _)| prepared);
-    let run = |value: f64| -> Result<Run, PathError> {
+    let run_by = |value: f64, effort| -> Result<Run, PathError> {
         case.watch.progress(&format!("{name} = {value}"), 0.0);
         let prepared = prepared_at(value)?;
-        Run::of(value, Case { prepared: &prepared, ..case })
+        Run::of(value, Case { prepared: &prepared, ..case }, effort)
     };
+    let run = |value: f64| run_by(value, Effort::All);
     let present = parameter.present;
     let (mut answer, mut collapse) = (run(present)?, None);
     if !answer.is_answer() {
@@ -84,7 +85,7 @@ pub(super) fn limit_by_runs(case: Case<'_>, name: &str) -> Result<Limit, PathErr
         limit.last = 0.0;
         (0.0, collapse)
     } else {
-        let Bracket { answer, none, proof } = narrowed(&run, answer, collapse, true)?;
+        let Bracket { answer, none, proof } = narrowed(&run_by, answer, collapse, true)?;
         limit.last = answer.value;
         limit.bracket = Some([answer.value, none.value]);
         limit.proof = proof.map(|proof| proof.value);
