@@ -3,12 +3,15 @@
 //! How far such a motion goes nothing determines. The equations are singular along it, and what a singular matrix makes of
 //! their rounding is no motion: searches leave it where it is, and a step of a path takes it back.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::{ConePair, ConeProblem};
 use crate::contact::sum::Sum;
 use crate::lcp::problem::NOISE;
 use stickslip_numerics::decompositions::svd;
+
+/// A square above this is none of a singular value that is rounding, whatever its own rounding.
+const SURE: f64 = 1e-10;
 
 impl ConePair {
     /// Whether nothing resists its tangential joints: friction resists nothing where the pair is not pressed.
@@ -35,7 +38,12 @@ impl ConeProblem<'_> {
             normal.chain(sliding).filter(|&joint| moves(joint)).for_each(|joint| held[joint] = false);
         }
         let rows: Vec<usize> = (0..held.len()).filter(|&joint| held[joint]).collect();
-        let found = svd(&kernel.select_rows(&rows))?;
+        let held = kernel.select_rows(&rows);
+        // The squares of the singular values tell at once where none can be rounding.
+        if SymmetricEigen::new(held.tr_mul(&held)).eigenvalues.iter().all(|square| *square > SURE) {
+            return None;
+        }
+        let found = svd(&held)?;
         // The basis is orthonormal to rounding.
         let still: Vec<usize> = (0..found.sigma.len()).filter(|&one| found.sigma[one] <= NOISE).collect();
         let mut motions = kernel * found.v.select_columns(&still);
