@@ -53,14 +53,28 @@ pub struct AtRest {
 /// Stopped from outside.
 pub fn at_rest(problem: &ContactProblem, watch: &dyn Watch) -> Result<Option<AtRest>, ConeFailure> {
     let Some(exact) = as_they_are(problem) else { return Ok(None) };
+    let built: Vec<f64> = exact.gaps().collect();
+    at_rest_where(&exact, &built, watch)
+}
+
+/// The same with these pairs as far open as they are now (`openings`, one for each pair) and not slipping from there, in a
+/// problem with joints in force form whose slips count from the present ones.
+///
+/// # Errors
+/// Stopped from outside.
+pub fn at_rest_where(
+    exact: &ContactProblem,
+    openings: &[f64],
+    watch: &dyn Watch,
+) -> Result<Option<AtRest>, ConeFailure> {
     let Some(stress) = exact.system.force_form.as_ref().map(|form| &form.self_stress) else { return Ok(None) };
     let [reached, others] = reached_and_others(&exact.system, stress);
-    let Some(mut unknowns) = undeformed(&exact, &reached) else { return Ok(None) };
-    let pairs = cone_pairs(&exact);
-    if reached.is_empty() || !move_others(&exact, &pairs, &others, &mut unknowns, watch)? {
+    let Some(mut unknowns) = unmoved(exact, &reached, openings) else { return Ok(None) };
+    let pairs = cone_pairs(exact);
+    if reached.is_empty() || !move_others(exact, &pairs, &others, &mut unknowns, watch)? {
         return Ok(None);
     }
-    let forces = joint_forces(&exact, &unknowns);
+    let forces = joint_forces(exact, &unknowns);
     let start = DVector::from_fn(unknowns.len(), |joint, _| match exact.system.is_forced(joint) {
         true => 0.0,
         false => forces[joint].value,
@@ -68,12 +82,12 @@ pub fn at_rest(problem: &ContactProblem, watch: &dyn Watch) -> Result<Option<AtR
     let opening = |pair: usize| if exact.system.is_forced(pair) { forces[pair].cleaned() } else { unknowns[pair] };
     let is_open = |pair: usize| opening(pair) > 0.0 && !exact.system.pairs[pair].law.is_bilateral();
     let open: Vec<bool> = (0..pairs.len()).map(is_open).collect();
-    let laws = Laws { exact: &exact, pairs: &pairs, reached: &reached, open: &open, start, stress };
+    let laws = Laws { exact, pairs: &pairs, reached: &reached, open: &open, start, stress };
     let Some((carried, is_least_norm)) = laws.forces() else { return Ok(None) };
     for joint in (0..unknowns.len()).filter(|&joint| exact.system.is_forced(joint)) {
         unknowns[joint] = carried[joint];
     }
-    Ok(Some(AtRest { state: state(&exact, &unknowns), is_least_norm }))
+    Ok(Some(AtRest { state: state(exact, &unknowns), is_least_norm }))
 }
 
 fn joints(system: &ContactSystem, pair: usize) -> impl Iterator<Item = usize> {
@@ -88,17 +102,17 @@ fn reached_and_others(system: &ContactSystem, stress: &DMatrix<f64>) -> [Vec<usi
     [reached, others]
 }
 
-/// The unknowns with the joints that self-stress reaches where they were built, at the gaps of their pairs, and without
-/// forces in those in force form. `None` where that is no state: parts that do not fit, or joints in force form that yield.
-fn undeformed(exact: &ContactProblem, reached: &[usize]) -> Option<DVector<f64>> {
+/// The unknowns with the joints that self-stress reaches where they are, and without forces in those in force form. `None`
+/// where that is no state: parts that do not fit, or joints in force form that yield.
+fn unmoved(exact: &ContactProblem, reached: &[usize], openings: &[f64]) -> Option<DVector<f64>> {
     let system = &*exact.system;
     let mut unknowns = DVector::zeros(system.joint_count());
     for &pair in reached {
-        if exact.laws[pair].gap() < 0.0 {
+        if openings[pair] < 0.0 {
             return None;
         }
         if !system.is_forced(pair) {
-            unknowns[pair] = exact.laws[pair].gap();
+            unknowns[pair] = openings[pair];
         }
     }
     let moved = joint_forces(exact, &unknowns);

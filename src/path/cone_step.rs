@@ -11,6 +11,7 @@ use super::resisted::{Place, resisted};
 use super::start::{PathError, cold, state_of};
 use crate::answer::pairs::JointState;
 use crate::answer::record::{PairState, State};
+use crate::contact::at_rest::AtRest;
 use crate::contact::cone::{ConeAnswer, ConeFailure, MixedProblem, MixedState};
 use crate::contact::on_cone::{OnCone, cone_pairs};
 use crate::contact::polygon::Polygon;
@@ -230,6 +231,13 @@ impl Step {
         Step { z, scheme: scheme(problem, &increments.z), increments }
     }
 
+    /// The same from an answer in which joints that repeat one another are at rest.
+    pub(super) fn at_rest(problem: ContactProblem, from: &DVector<f64>, found: AtRest) -> Step {
+        let problem = behind_slips(problem, from);
+        let increments = JointState::at_rest(&problem, found);
+        Step::of(&problem, from, increments)
+    }
+
     /// The same from the answer of a problem with joints in force form.
     fn of_mixed(problem: &ContactProblem, from: &DVector<f64>, found: MixedState) -> Step {
         Step::of(problem, from, JointState { on_cone: true, ..JointState::of_mixed(problem, found) })
@@ -255,7 +263,7 @@ pub(super) fn behind_slips(mut problem: ContactProblem, from: &DVector<f64>) -> 
 }
 
 /// The same with joints in force form, where the joints of the problem yield.
-fn exactly_behind(problem: &ContactProblem, from: &DVector<f64>) -> Option<ContactProblem> {
+pub(super) fn exactly_behind(problem: &ContactProblem, from: &DVector<f64>) -> Option<ContactProblem> {
     let exact = problem.system.yielding.as_ref()?.exactly(problem)?;
     Some(behind_slips(exact, from))
 }

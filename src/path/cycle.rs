@@ -5,10 +5,10 @@
 
 use super::exact_cycle::{self, Repetition};
 use super::load_parameter::factors_at;
-use super::stages::{Begin, History, HistoryEnd, StageResult, follow_until, limit_words};
+use super::stages::{Begin, History, HistoryEnd, RESTS, StageResult, follow_until, limit_words};
 use super::start::PathError;
 use super::static_shakedown::{Static, static_shakedown};
-use crate::answer::record::{PairState, Ray};
+use crate::answer::record::{PairState, Ray, Verdict};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
@@ -37,9 +37,9 @@ pub enum Kind {
     Alternates,
     /// The same further way in every cycle.
     Ratchets,
-    /// A limit is met on the way.
+    /// A limit is met on the way, and proved.
     Collapses,
-    /// Not told apart within the cycles followed.
+    /// Not told apart within the cycles followed, or as far as these lead on.
     Undecided,
 }
 
@@ -266,8 +266,15 @@ pub(super) fn followed(
         judged(stages, true, (softest, same)).0 != Kind::Undecided
     };
     let history = follow_until(case, begin, &targets, &mut decided)?;
-    let (kind, turns) = judged(&history.stages, history.end == HistoryEnd::Complete, (softest, same));
-    let sentence = said(kind, &turns, &history, same, (name, ends));
+    let (mut kind, turns) = judged(&history.stages, history.end == HistoryEnd::Complete, (softest, same));
+    let is_proof = |collapse: &Ray| collapse.verdict.is_some_and(Verdict::is_proof);
+    if kind == Kind::Undecided && matches!(&history.end, HistoryEnd::Limit { collapse, .. } if is_proof(collapse)) {
+        kind = Kind::Collapses;
+    }
+    let mut sentence = said(kind, &turns, &history, same, (name, ends));
+    if history.stages.iter().any(|stage| !stage.rests.is_empty()) {
+        sentence.push_str(&format!("; {RESTS}"));
+    }
     Ok(Cycle {
         name: name.to_owned(),
         ends,
@@ -355,9 +362,6 @@ fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -
         };
         break;
     }
-    if kind == Kind::Undecided && !complete {
-        kind = Kind::Collapses;
-    }
     (kind, turns)
 }
 
@@ -393,6 +397,7 @@ fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: (&str, [
         Kind::Alternates => format!("the slips of cycle {count} go to and fro; {}", recurrence(turns, same)),
         Kind::Ratchets => format!("cycle {count} leaves slips behind; {}", recurrence(turns, same)),
         Kind::Collapses => collapse_sentence(history, load),
+        Kind::Undecided if matches!(history.end, HistoryEnd::Limit { .. }) => collapse_sentence(history, load),
         Kind::Undecided => {
             let difference = |index: usize| turns.get(index).and_then(|turn| turn.difference);
             let rate = match (difference(count.wrapping_sub(1)), difference(count.wrapping_sub(2))) {

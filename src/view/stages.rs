@@ -29,6 +29,9 @@ pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Styl
         );
         style.paragraph(out, Role::Muted, &text)?;
     }
+    if let Some(text) = history.rest_sentence() {
+        style.paragraph(out, Role::Warning, &text)?;
+    }
     for (index, stage) in history.stages.iter().enumerate() {
         for moment in stage.moments.iter().filter(|moment| moment.jump) {
             let balance = match stage.energy.is_some_and(|energy| !energy.is_balanced()) {

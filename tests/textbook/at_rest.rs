@@ -9,6 +9,7 @@
 use serde_json::{Value, json};
 use stickslip::answer::record::{Answer, Verdict};
 use stickslip::path::limit::{Limit, limit};
+use stickslip::path::stages::{Begin, History, HistoryEnd, follow_factors};
 
 use crate::common::laws::violation;
 use crate::common::lines::{read, report, text};
@@ -86,11 +87,13 @@ fn a_rigid_block_stands_as_long_as_some_self_stress_holds_it() {
     is_limit(&of_push(&case), expected);
 }
 
-/// The push reaches the block at the ground, through a bar from a runner of its own that slips under it: what is left of it
-/// is held by the block, P − f w = W (f_0 + (f_3 − f_0) x_W/3) at its limit.
-#[test]
-fn what_slips_beside_a_body_at_rest() {
-    let ([weight, place, _], [pressed, friction]) = (BLOCK, [2.0, 0.25]);
+/// Weight on the runner and its friction; EA/L of its rod.
+const RUNNER: [f64; 2] = [2.0, 0.25];
+const ROD: f64 = 1e4 * 0.5 / 2.0;
+
+/// The push reaches the block at the ground, through a bar from a runner of its own that slips beside it.
+fn behind_a_runner() -> Value {
+    let [pressed, friction] = RUNNER;
     let mut value = block(0.0);
     value["nodes"]["runner"] = json!([-2, 0]);
     value["materials"] = json!({ "m": { "E": 1e4, "nu": 0 } });
@@ -105,7 +108,14 @@ fn what_slips_beside_a_body_at_rest() {
         .expect("items")
         .push(json!({ "point": { "at": "runner", "force": [0, -pressed] } }));
     value["loads"]["push"]["items"] = json!([{ "point": { "at": "runner", "force": [1, 0] } }]);
-    let case = Case::json(value);
+    value
+}
+
+/// What is left of the push behind the runner is held by the block, P − f w = W (f_0 + (f_3 − f_0) x_W/3) at its limit.
+#[test]
+fn what_slips_beside_a_body_at_rest() {
+    let ([weight, place, _], [pressed, friction]) = (BLOCK, RUNNER);
+    let case = Case::json(behind_a_runner());
     let expected = friction * pressed + weight * (FEET[0] + (FEET[3] - FEET[0]) / 3.0 * place);
     for share in [0.6, 0.9, 1.0 - 1e-7] {
         let push = share * expected;
@@ -113,19 +123,20 @@ fn what_slips_beside_a_body_at_rest() {
         is_answer(&answer);
         let runner = answer.pairs.last().expect("the runner");
         close("slipping", runner.x_t, -friction * pressed, 1e-12);
-        // The rod: EA/L = 1e4 · 0.5/2.
-        close("slip", runner.z_t, (push - friction * pressed) / 2500.0, 1e-9);
+        close("slip", runner.z_t, (push - friction * pressed) / ROD, 1e-9);
         near("held", sum(&answer, |pair| pair.x_t), -push, 1e-12, push);
     }
     is_limit(&of_push(&case), expected);
 }
 
+/// Weight of the plate and friction of its feet.
+const PLATE: (f64, [f64; 4]) = (12.0, [0.5, 0.3, 0.2, 0.4]);
+
 /// A plate on four feet at the corners of a rectangle, W and the push through its centre: x_n = W/4 ± s, and friction along
 /// the push is no more than Σ f x_n = (Σ f) W/4, whatever s is, for the sums of f over both diagonals are equal. That is
 /// reached where it does not turn the plate: −f_0 x_0 − f_1 x_1 + f_2 x_2 + f_3 x_3 = 0 with s = −W/8.
-#[test]
-fn a_plate_on_four_feet_in_space() {
-    let (weight, frictions) = (12.0, [0.5, 0.3, 0.2, 0.4]);
+fn plate() -> Case {
+    let (weight, frictions) = PLATE;
     let places = [[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0]];
     let nodes: Vec<String> = (0..4).map(|i| format!("k{i}")).collect();
     let mut value = json!({
@@ -141,7 +152,12 @@ fn a_plate_on_four_feet_in_space() {
         }
     });
     nodes.iter().zip(places).for_each(|(node, place)| value["nodes"][node] = json!(place));
-    let case = Case::json(value);
+    Case::json(value)
+}
+
+#[test]
+fn a_plate_on_four_feet_in_space() {
+    let (case, (weight, frictions)) = (plate(), PLATE);
     let expected = frictions.iter().sum::<f64>() * weight / 4.0;
     let [a, b, c, d] = frictions;
     let s = weight / 4.0 * (c + d - a - b) / (a - b - c + d);
@@ -158,6 +174,10 @@ fn a_plate_on_four_feet_in_space() {
         assert!((0..4).all(|pair| held(pair) <= bound(pair) * (1.0 + 1e-12)), "{:?}", answer.pairs);
     }
     is_limit(&of_push(&case), expected);
+    // Its history rests up to there.
+    let found = history(&case, &[0.0, 0.9 * expected, -0.5 * expected, 2.0 * expected]);
+    assert!(found.stages.iter().all(|stage| stage.end.pairs.iter().all(|pair| pair.slip() == [0.0; 2])));
+    ends_at(&found, 3, [-0.5 * expected, 2.0 * expected, expected], 1e-7);
 }
 
 /// What starts from an answer that no pivots led to: each command says what is so of it.
@@ -175,6 +195,13 @@ fn an_answer_at_rest_is_an_answer_to_every_command() {
     assert!(said.contains("no pivots lead on from the answer at the present load") && !said.contains("limit load"));
     let found = report(&mut session, "limit push").expect("a limit");
     close("limit", found["limit"].as_f64().expect("a limit"), expected, 1e-7);
+    // To and fro up to there nothing slips.
+    for (end, kind) in [(5.4, "shakes-down"), (5.5, "collapses")] {
+        let found = report(&mut session, &format!("cycle push 0..{end}")).expect("cycles");
+        assert_eq!(found["kind"], kind, "{found}");
+        let said = text(&mut session, &format!("cycle push 0..{end}"));
+        assert!(said.replace('\n', " ").contains("stay at rest by forces within friction"), "{said}");
+    }
     // More weight holds more.
     let own = report(&mut session, "limit own").expect("an end");
     assert!(own["limit"].is_null() && own["end"].as_str().is_some_and(|end| end.contains("no collapse was found")));
@@ -209,4 +236,66 @@ fn friction_that_holds_a_body_at_rest() {
     let found = report(&mut session, "find f 0.1..0.8 where outcome answer").expect("a range");
     close("least friction", found["holds"][0][0].as_f64().expect("a number"), least, 1e-8);
     close("all above", found["holds"][0][1].as_f64().expect("a number"), 0.8, 1e-12);
+}
+
+fn history(case: &Case, pushes: &[f64]) -> History {
+    let values = case.scenario.parameter_values();
+    let targets: Vec<Vec<f64>> = pushes.iter().map(|push| vec![1.0, *push]).collect();
+    follow_factors(case.prepared.case(&case.scenario, &values), &Begin::Unloaded, &targets).expect("a history")
+}
+
+/// Where a history ends that pushes the block beyond its limit, in the stage of this number.
+#[track_caller]
+fn ends_at(found: &History, number: usize, [from, to, expected]: [f64; 3], precision: f64) {
+    let HistoryEnd::Limit { stage, t, collapse } = &found.end else { panic!("{:?}", found.end) };
+    assert_eq!((*stage, collapse.verdict), (number, Some(Verdict::Certified)));
+    near("limit", from + t * (to - from), expected, precision, expected);
+}
+
+/// Nothing moves as long as some self-stress holds the block: pushed, let go, and pushed beyond the limit of above.
+#[test]
+fn a_history_rests_as_long_as_some_self_stress_holds_it() {
+    let [weight, place, height] = BLOCK;
+    let rise = (FEET[3] - FEET[0]) / 3.0;
+    let expected = weight * (FEET[0] + rise * place) / (1.0 - rise * height);
+    let found = history(&Case::json(block(0.01)), &[0.0, 5.0, -1.0, 5.4, 7.0]);
+    assert_eq!(found.stages.len(), 5);
+    for (stage, push) in found.stages.iter().zip([0.0, 5.0, -1.0, 5.4, expected]) {
+        for moment in &stage.moments {
+            let [own, push] = moment.factors[..] else { panic!("two cases") };
+            near("pressed", moment.pairs.iter().map(|pair| pair.x_n).sum(), own * weight, 1e-11, weight);
+            near("held", moment.pairs.iter().map(|pair| pair.x_t).sum(), -push, 1e-11, weight);
+            let turned: f64 = moment.pairs.iter().zip(0..4).map(|(pair, x)| f64::from(x) * pair.x_n).sum();
+            near("turned", turned, own * weight * place + push * height, 1e-11, weight);
+            assert!(moment.pairs.iter().all(|pair| pair.z_t == 0.0 && pair.reserve() >= -1e-12), "{:?}", moment.pairs);
+        }
+        near("push", stage.moments.last().expect("an end").factors[1], push, 1e-9, expected);
+        near("dissipated", stage.dissipated, 0.0, 1e-12, 1.0);
+    }
+    assert!(found.stages[1].rests.last().is_some_and(|rest| rest[1] == 1.0), "{:?}", found.stages[1].rests);
+    ends_at(&found, 4, [5.4, 7.0, expected], 1e-9);
+}
+
+/// The block rests all the while that the runner slips to and fro: pushed to P it slips (P − f w)/k, and pulled back from
+/// there on it stays until P has fallen by 2 f w; at P = 0 it is held by f w. It loses f w on all its way.
+#[test]
+fn a_runner_slips_to_and_fro_beside_a_body_at_rest() {
+    let ([weight, place, _], [pressed, friction]) = (BLOCK, RUNNER);
+    let (bound, push) = (friction * pressed, 4.5);
+    let case = Case::json(behind_a_runner());
+    let limit = bound + weight * (FEET[0] + (FEET[3] - FEET[0]) / 3.0 * place);
+    let found = history(&case, &[0.0, push, 0.0, push, 2.0 * limit]);
+    let far = (push - bound) / ROD;
+    let slips = [0.0, far, bound / ROD, far];
+    let lost = [0.0, far, far - bound / ROD, far - bound / ROD].map(|way| bound * way);
+    for (stage, (slip, lost)) in found.stages.iter().zip(slips.into_iter().zip(lost)) {
+        let (runner, feet) = stage.end.pairs.split_last().expect("pairs");
+        is_answer(&stage.end);
+        near("slip", runner.z_t, slip, 1e-9, far);
+        near("dissipated", stage.dissipated, lost, 1e-9, bound * far);
+        assert!(feet.iter().all(|pair| pair.z_t == 0.0), "{feet:?}");
+        assert!(stage.energy.is_some_and(|energy| energy.is_balanced()), "{:?}", stage.energy);
+    }
+    assert!(found.stages[1..4].iter().all(|stage| !stage.rests.is_empty()));
+    ends_at(&found, 4, [push, 2.0 * limit, limit], 1e-9);
 }

@@ -8,8 +8,9 @@ use super::walk::Walk;
 use crate::answer::pairs::pair_states;
 use crate::answer::record::{Ray, State, Verdict};
 use crate::contact::lcp::contact_lcp;
+use crate::contact::problem::ContactProblem;
 use crate::contact::rows::RowKind;
-use crate::explain::ray;
+use crate::explain::ray::{self, all_answers};
 use crate::lcp::outcome::RayDirection;
 use crate::lcp::variable::Variable;
 use crate::model::rules::Covering;
@@ -27,12 +28,19 @@ const STAYS: f64 = 4.0;
 
 /// What a collapse on the way says of the loads of its stage.
 pub(super) fn explanation(collapse: &Ray) -> &'static str {
-    if collapse.verdict == Some(Verdict::Certified) {
-        "The loads of this stage cannot be reached: beyond this place no contact forces within the laws' bounds balance them, \
-         and nothing resists this motion."
-    } else {
-        "The loads of this stage could not be followed further: the rate problem has no answer that was found, and no state \
-         just beyond was found to jump to. That the loads cannot be carried is not proved."
+    match collapse.verdict {
+        Some(Verdict::Certified) => {
+            "The loads of this stage cannot be reached: beyond this place no contact forces within the laws' bounds balance \
+             them, and nothing resists this motion."
+        }
+        Some(Verdict::Proved) => {
+            "The loads of this stage cannot be reached from here: just beyond this place no state obeys the laws, with slips \
+             that count from here. Every working scheme was tried."
+        }
+        _ => {
+            "The loads of this stage could not be followed further: the rate problem has no answer that was found, and no \
+             state just beyond was found to jump to. That the loads cannot be carried is not proved."
+        }
     }
 }
 
@@ -52,6 +60,11 @@ impl Walk<'_> {
         }
         if let Some(to) = self.jump(course, t, way)? {
             return Ok(Ok(to));
+        }
+        let at = t + CERTIFIED_AT;
+        let problem = self.problem_behind(&self.slips(), &course.factors_at(at), &course.gaps_at(at));
+        if all_answers(&problem, self.place.watch).is_some_and(|found| found.no_answer()) {
+            collapse.verdict = Some(Verdict::Proved);
         }
         collapse.explanation = explanation(&collapse).to_owned();
         Ok(Err(collapse))
@@ -107,9 +120,22 @@ impl Walk<'_> {
 
     /// The answer of eq. (8) at a place, in increments from the present slip.
     fn answer_at(&self, course: &Course, to: f64) -> Result<Option<There>, PathError> {
+        Ok(self.answer_behind(self.slips(), &course.factors_at(to), &course.gaps_at(to))?.ok())
+    }
+
+    /// The present slips over the joints.
+    fn slips(&self) -> DVector<f64> {
         let mut committed = self.standing.z.clone();
         committed.rows_mut(0, self.place.laws.problem.system.pair_count()).fill(0.0);
-        Ok(self.answer_behind(committed, &course.factors_at(to), &course.gaps_at(to))?.ok())
+        committed
+    }
+
+    /// The problem of eq. (8) under these factors and gaps, in increments from committed slips over the joints.
+    fn problem_behind(&self, committed: &DVector<f64>, factors: &[f64], gaps: &[f64]) -> ContactProblem {
+        let mut problem = self.problem_at(factors, gaps);
+        let shift = &problem.system.stiffness * committed;
+        problem.add_load(1.0, &shift, &shift.abs());
+        problem
     }
 
     /// The answer of eq. (8) under these factors and gaps, in increments from committed slips over the joints; how the run
@@ -120,9 +146,7 @@ impl Walk<'_> {
         factors: &[f64],
         gaps: &[f64],
     ) -> Result<Result<There, &'static str>, PathError> {
-        let mut problem = self.problem_at(factors, gaps);
-        let shift = &problem.system.stiffness * &committed;
-        problem.add_load(1.0, &shift, &shift.abs());
+        let problem = self.problem_behind(&committed, factors, gaps);
         let found = cold(&problem, self.place.watch)?;
         if found.basis.is_none() {
             return Ok(Err(found.how()));

@@ -45,6 +45,24 @@ pub(super) struct Way {
     pub(super) pivots: usize,
     /// z_τ of its last stretch, over the joints.
     pub(super) last_slip: DVector<f64>,
+    /// Where it rests, from place to place ([`super::resting`]).
+    pub(super) rests: Vec<[f64; 2]>,
+}
+
+impl Way {
+    /// From this moment on.
+    pub(super) fn from(start: Moment) -> Way {
+        let none = DVector::zeros(start.state.z.len());
+        Way { moments: vec![start], pivots: 0, last_slip: none, rests: Vec::new() }
+    }
+
+    /// A rest, which may go on from another one.
+    pub(super) fn rest(&mut self, [from, to]: [f64; 2]) {
+        match self.rests.last_mut() {
+            Some(last) if last[1] == from => last[1] = to,
+            _ => self.rests.push([from, to]),
+        }
+    }
 }
 
 /// The factors of all load cases at the ends of the stages, and the question whether the stages followed are enough.
@@ -188,6 +206,7 @@ pub(super) trait Follower<'a> {
             dissipated: energy::dissipated(system, &way.moments),
             moments: way.moments,
             pivots: way.pivots,
+            rests: way.rests,
             slip,
             energy: None,
             estimated_error: self.estimated_error(),

@@ -15,6 +15,7 @@ use super::beyond::explanation;
 use super::course::Course;
 use super::follower::{Follower, Limit, Place, Targets, Way, recorded};
 use super::record::History;
+use super::resting::{Rest, rest};
 use super::standing::Laws;
 use super::walk::breakdown;
 use crate::answer::check::TOLERANCE;
@@ -104,14 +105,13 @@ impl ForcedWalk<'_> {
             return Ok(Some(found.how()));
         }
         (self.place.factors, self.place.gaps) = (factors.to_vec(), gaps.to_vec());
-        self.stand(&problem, &found.contact, &found.point);
+        self.stand(&problem, &found.contact, state_of(&problem, &found.contact, &found.point));
         Ok(None)
     }
 
-    /// Stands at a point of an LCP of increments of slip.
-    fn stand(&mut self, problem: &ContactProblem, contact: &ContactLcp, point: &Point) {
+    /// Stands at a state of the problem of increments of slip whose LCP this is.
+    fn stand(&mut self, problem: &ContactProblem, contact: &ContactLcp, mut state: JointState) {
         let system = &*self.place.laws.problem.system;
-        let mut state = state_of(problem, contact, point);
         state.left.clear();
         let mut pairs = pair_states(problem, contact, &state);
         self.place.way = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
@@ -241,8 +241,7 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
     }
 
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError> {
-        let none = DVector::zeros(self.slips.len());
-        let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };
+        let mut way = Way::from(self.moment(0.0, false));
         let (mut t, mut events, mut has_jumped) = (0.0, 0, false);
         let constants = |at: f64| self.problem_at(&course.factors_at(at), &course.gaps_at(at)).joint_constants();
         let rate = constants(1.0) - constants(0.0);
@@ -257,16 +256,29 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
             if events > EVENTS {
                 return Err(breakdown(t, &format!("the limit of {EVENTS} events in a stage was reached")));
             }
-            let (to, contact, point, jump) = match self.ahead(course, &rate, (t, has_jumped), &mut way)? {
-                Ahead::Event(to, contact, point) => (to, contact, point, false),
-                Ahead::Jump(to, contact, point) => (to, contact, point, true),
-                Ahead::Limit(ray) => return Ok((way, Some((t, self.collapse(course, t, ray))))),
+            let behind = |to: f64| self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
+            let ahead = self.ahead(course, &rate, (t, has_jumped), &mut way)?;
+            let rests = match ahead {
+                Ahead::Event(..) => None,
+                // What can stay where it is does not jump.
+                _ => rest(&|to| Some(behind(to)), (&self.state.z, &self.state.force), t, self.place.watch)?,
             };
-            let (factors, gaps) = (course.factors_at(to), course.gaps_at(to));
-            let problem = self.beyond_slips(&factors, &gaps);
-            let before = self.slips.clone();
-            (self.place.factors, self.place.gaps) = (factors, gaps);
-            self.stand(&problem, &contact, &point);
+            let (to, contact, state, jump) = match (ahead, rests) {
+                (_, Some(Rest { to, found })) => {
+                    way.rest([t, to]);
+                    (to, path_lcp(&behind(to), &rate), Ok(found), false)
+                }
+                (Ahead::Event(to, contact, point), None) => (to, *contact, Err(point), false),
+                (Ahead::Jump(to, contact, point), None) => (to, *contact, Err(point), true),
+                (Ahead::Limit(ray), None) => return Ok((way, Some((t, self.collapse(course, t, ray))))),
+            };
+            let (problem, before) = (behind(to), self.slips.clone());
+            let state = match state {
+                Ok(rest) => JointState::at_rest(&problem, rest),
+                Err(point) => state_of(&problem, &contact, &point),
+            };
+            (self.place.factors, self.place.gaps) = (course.factors_at(to), course.gaps_at(to));
+            self.stand(&problem, &contact, state);
             way.last_slip = &self.slips - before;
             way.moments.push(self.moment(to, jump));
             (t, has_jumped) = (to, jump && to == t);

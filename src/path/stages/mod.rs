@@ -18,14 +18,15 @@ mod integrals;
 mod rate_problem;
 mod record;
 mod released;
+mod resting;
 mod space;
 mod standing;
 mod walk;
 
 pub(in crate::path) use released::loose_motions;
 
-pub(super) use record::limit_words;
 pub use record::{Energy, History, HistoryEnd, Moment, StageResult};
+pub(super) use record::{RESTS, limit_words};
 
 use std::time::Instant;
 

@@ -7,6 +7,8 @@ use crate::answer::pairs::JointState;
 use crate::answer::record::{Answer, InSpace, OutcomeKind, PairState, Ray, State, Verdict};
 use crate::path::change::Change;
 use crate::path::start::PathError;
+use crate::text::number::short;
+use crate::text::words::list;
 
 /// The structure at one moment of the history.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +53,9 @@ pub struct StageResult {
     pub dissipated: f64,
     /// Work of the nodal forces and change of the energy that the nodes store; structures only.
     pub energy: Option<Energy>,
+    /// Where nothing moved on joints that repeat one another, from place to place in the stage, though no rates led on: what
+    /// these carry there is some self-stress within friction, which nothing determines.
+    pub rests: Vec<[f64; 2]>,
     /// What the ends of its legs may be wrong by, as a share of the largest displacement, where directions of slip turn
     /// on the way: the sum of the last corrections. `None` where every way is straight.
     pub estimated_error: Option<f64>,
@@ -167,6 +172,17 @@ impl History {
         }
     }
 
+    /// Where it rested on joints that repeat one another, and what that says of the forces there; `None` where it did not.
+    pub fn rest_sentence(&self) -> Option<String> {
+        let of_stage = |(index, stage): (usize, &StageResult)| {
+            let places = stage.rests.iter().map(|[from, to]| format!("from {} to {}", short(*from), short(*to)));
+            let places: Vec<String> = places.collect();
+            (!places.is_empty()).then(|| format!("stage {} {} of it", index + 1, list(&places)))
+        };
+        let places: Vec<String> = self.stages.iter().enumerate().filter_map(of_stage).collect();
+        (!places.is_empty()).then(|| format!("{RESTS} ({})", list(&places)))
+    }
+
     /// The pairs at place t of a stage; z_t is the total slip. `None` beyond the end.
     pub fn pairs_at(&self, stage: usize, t: f64) -> Option<Vec<PairState>> {
         let moments = &self.stages.get(stage)?.moments;
@@ -199,10 +215,15 @@ impl History {
     }
 }
 
+/// What is said where a history rests on joints that repeat one another.
+pub(in crate::path) const RESTS: &str = "joints that repeat one another stay at rest by forces within friction that their \
+                                         motion leaves undetermined; other forces may let go earlier";
+
 /// What ends a history, and how it moves there.
 pub(in crate::path) fn limit_words(collapse: &Ray) -> String {
     let proof = match collapse.verdict {
         Some(Verdict::Certified) => "the limit load is reached",
+        Some(Verdict::Proved) => "no state leads on, which all working schemes together prove",
         _ => "no rates and no other state lead on, which is not proved to be the limit load",
     };
     format!("{proof} ({})", collapse.mode)

@@ -260,8 +260,7 @@ impl<'a> Follower<'a> for Walk<'a> {
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError> {
         let system = &*self.place.laws.problem.system;
         let (rate, sizes) = (course.rate(system), course.rate_sizes(system));
-        let none = DVector::zeros(system.joint_count());
-        let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };
+        let mut way = Way::from(self.moment(0.0, false));
         let (mut t, mut reached, mut events, mut jumps) = (0.0, Vec::new(), 0, 0);
         // Where the jumps that follow one another began.
         let mut began = 0.0;

@@ -89,6 +89,9 @@ pub(in crate::session) fn history_json(history: &History) -> Value {
             "changes": changes.collect::<Vec<_>>(),
             "pairs": stage.moments.last().map(|end| &end.pairs),
         });
+        if !stage.rests.is_empty() {
+            of_stage["rests"] = json!(stage.rests);
+        }
         if let Some(error) = stage.estimated_error {
             of_stage["estimated_error"] = json!(error);
         }

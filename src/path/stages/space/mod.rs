@@ -7,6 +7,7 @@
 //! begins from the one before, and where that leads nowhere from the answer on the friction polygon.
 
 mod leg;
+mod resting;
 
 use nalgebra::DVector;
 
@@ -181,7 +182,8 @@ impl SpaceWalk<'_> {
         Ok(short(1.0 - t))
     }
 
-    /// One short step across whatever happens at t; what follows where there is no answer after it.
+    /// One short step across whatever happens at t, or a rest where no step leads on; what follows where there is no answer
+    /// after it.
     fn cross(
         &mut self,
         course: &Course,
@@ -192,7 +194,14 @@ impl SpaceWalk<'_> {
         let problem = along(laws.problem, course);
         let to = reached(t, length);
         let guess = &self.z + &self.rate * length;
-        let (step, is_near) = match self.stepper.onward(problem(to), self.here(), &guess)? {
+        let near = self.stepper.onward(problem(to), self.here(), &guess)?;
+        // What can stay where it is does not jump.
+        if near.is_none()
+            && let Some(rested) = self.rest(course, t, way)?
+        {
+            return Ok(Ok(rested));
+        }
+        let (step, is_near) = match near {
             Some(step) => (step, true),
             None => match self.stepper.anywhere(problem(to), &self.z, Some(&self.increments.force))? {
                 Ok(step) => (step, false),
@@ -211,6 +220,12 @@ impl SpaceWalk<'_> {
                 nearer => nearer,
             };
             jump = nearer.is_none_or(|nearer| self.measure.of(&(nearer.z - &self.z)) > STAYS * motion);
+        }
+        if jump
+            && is_near
+            && let Some(rested) = self.rest(course, t, way)?
+        {
+            return Ok(Ok(rested));
         }
         let ends = [&self.increments.force, &step.increments.force];
         let integrals = Integrals::straight(length, [&self.z, &step.z], ends, &laws.problem.system);
@@ -401,8 +416,7 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
 
     fn along(&mut self, course: &Course, report: &dyn Fn(f64) -> f64) -> Result<(Way, Limit), PathError> {
         self.integrals = None;
-        let none = DVector::zeros(self.z.len());
-        let mut way = Way { moments: vec![self.moment(0.0, false)], pivots: 0, last_slip: none };
+        let mut way = Way::from(self.moment(0.0, false));
         if course.rate(&self.place.laws.problem.system).amax() == 0.0 {
             self.place.factors = course.factors_at(1.0);
             way.moments.push(self.moment(1.0, false));
@@ -415,10 +429,15 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
         let (mut next, mut event): (Option<f64>, Option<f64>) = (None, None);
         let mut ahead: Option<Scheme> = None;
         let mut mark = -1.0;
+        let is_rigid = self.is_rigid();
         while t < 1.0 {
             self.place.watch.progress("stages", report(t));
             if self.place.watch.stop() {
                 return Err(PathError::Interrupted);
+            }
+            if is_rigid && let Some((to, _)) = self.rest(course, t, &mut way)? {
+                t = to;
+                continue;
             }
             legs += 1;
             if legs > LEGS {
@@ -426,9 +445,12 @@ impl<'a> Follower<'a> for SpaceWalk<'a> {
             }
             if legs % CREEPING == 0 {
                 if t - mark < LEAD {
-                    return Err(breakdown(t, &self.why_stuck(t - mark)));
+                    let why = self.why_stuck(t - mark);
+                    t = self.rest(course, t, &mut way)?.ok_or_else(|| breakdown(t, &why))?.0;
+                    (ahead, next, event) = (None, None, None);
                 }
                 mark = t;
+                continue;
             }
             let length = next.take().unwrap_or(h).min(LONGEST).min(1.0 - t - SHORT);
             let Some(scheme) = ahead.clone().filter(|_| length > 2.0 * SHORT) else {
