@@ -1,9 +1,11 @@
 //! `cycle`: shakedown, slip to and fro, ratcheting, against closed forms.
 
+use serde_json::json;
 use stickslip::model::embedded;
 use stickslip::model::load::load_text;
 
 use super::find::{beam, near, number, report, session, text};
+use crate::common::{lines, scenario_text};
 
 /// A bar of six nodes with friction r = 30 each and flexibility 1e-5 m/kN between them, pulled at its end from 0 to F
 /// and back. Unloading by F slips the end back where F > 2 r: with k nodes sliding both ways, each half cycle moves the
@@ -340,5 +342,41 @@ fn what_repeats_is_proved_in_rationals() {
     for push in ["0.6", "0.8", "0.95", "1.2"] {
         let proof = &report(&mut nodes, &format!("cycle L 0..{push}")).unwrap()["proof"];
         assert_eq!((&proof["proved"], &proof["map"]), (&true.into(), &"identical".into()), "{push}: {proof}");
+    }
+}
+
+/// A row of nodes on normal springs, joined by bars and pulled at its end: it slides at Σ f N, where no wedge holds it. Statics alone
+/// would let springs press harder, so that no certificate says so: of three pairs all working schemes prove it, of eleven they
+/// are too many, and what is not proved is not called a collapse.
+#[test]
+fn what_is_not_proved_is_no_collapse() {
+    for (m, kind) in [(3, "collapses"), (11, "undecided")] {
+        let mut stiffness = vec![vec![0.0; 2 * m]; 2 * m];
+        for i in 0..m {
+            stiffness[i][i] = 1000.0;
+        }
+        for i in m..2 * m - 1 {
+            for (a, b, by) in [(i, i, 1.0), (i + 1, i + 1, 1.0), (i, i + 1, -1.0), (i + 1, i, -1.0)] {
+                stiffness[a][b] += 1000.0 * by;
+            }
+        }
+        let own: Vec<f64> = (0..2 * m).map(|row| if row < m { 40.0 } else { 0.0 }).collect();
+        let pull: Vec<f64> = (0..2 * m).map(|row| if row + 1 == 2 * m { -1.0 } else { 0.0 }).collect();
+        let mut session = lines::read(&scenario_text(json!({
+            "parameters": { "F": 10 },
+            "contact_system": {
+                "pairs": (0..m).map(|i| format!("c{i}")).collect::<Vec<_>>(), "stiffness": stiffness,
+                "friction": vec![0.5; m],
+                "loads": { "own": { "vector": own }, "pull": { "factor": "F", "vector": pull } }
+            }
+        })));
+        let limit = 20.0 * m as f64;
+        let found = report(&mut session, &format!("cycle pull 0..{}", 1.5 * limit)).unwrap();
+        assert_eq!(found["kind"], kind, "{found}");
+        let sentence = found["sentence"].as_str().unwrap();
+        assert!(sentence.contains(&format!("in cycle 1 on the way to pull = {}", 1.5 * limit)), "{sentence}");
+        assert!(sentence.contains(&format!("at {limit}")), "{sentence}");
+        assert_eq!(sentence.contains("not proved"), kind == "undecided", "{sentence}");
+        assert_eq!(found["collapse"].is_null(), kind == "undecided", "{found}");
     }
 }
