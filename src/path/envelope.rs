@@ -3,7 +3,7 @@
 
 use super::profile::{Shape, profile};
 use super::quantity::{Facts, Value, history_for};
-use super::route::{Known, Route};
+use super::route::Route;
 use super::start::PathError;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
@@ -91,14 +91,15 @@ fn on_route(route: &Route<'_>, axis: &Axis, quantities: &[Quantity]) -> Envelope
         peaks
     };
     let [low, high] = route.covered();
-    let mut notes = route.notes();
+    let mut notes: Vec<String> = route.notes();
+    notes.extend(quantities.iter().filter_map(|quantity| route.doubt(quantity)));
     if low > axis.range[0] || high < axis.range[1] {
         let [low, high] = [low, high].map(short);
         notes.insert(0, format!("over {} from {low} to {high} only, as far as the path leads", axis.name));
     }
     Envelope {
         peaks: quantities.iter().map(of).collect(),
-        exact: route.known() == Known::Exactly,
+        exact: quantities.iter().all(|quantity| route.is_exact(quantity)),
         covered: Some(route.covered()),
         notes,
     }

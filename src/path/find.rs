@@ -5,7 +5,7 @@ use std::cell::Cell;
 
 use super::profile::{ROUNDING, Shape, number, profile, zero};
 use super::quantity::{Facts, Value, history_for};
-use super::route::{Known, Route};
+use super::route::Route;
 use super::start::PathError;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
@@ -160,13 +160,14 @@ fn on_route(route: &Route<'_>, range: [f64; 2], quantity: &Quantity, wanted: &Wa
         above: None,
         change: route.change(value),
     });
-    found.exact = route.known() == Known::Exactly;
+    found.exact = route.is_exact(quantity);
     found.covered = route.covered();
     found.notes = route.notes();
     let [low, high] = found.covered;
     if (low > range[0] || high < range[1]) && found.notes.is_empty() {
         found.notes.push("the path does not lead through the whole range".to_owned());
     }
+    found.notes.extend(route.doubt(quantity));
     found
 }
 

@@ -16,6 +16,9 @@ pub const ROUNDING: f64 = 1e-12;
 /// within half of the least differs from the end by its square in a smooth function: by rounding.
 const BESIDE: [f64; 4] = [0.25, 1e-2, 1e-4, 1e-6];
 
+/// How far from a corner, as a share of the way, the straight lines that meet there are looked at.
+const CORNER: [f64; 3] = [1e-3, 1e-5, 1e-7];
+
 /// A quantity over one stretch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
@@ -56,7 +59,8 @@ pub fn profile(route: &Route<'_>, quantity: &Quantity) -> Vec<Piece> {
         };
         Piece { stretch: *stretch, shape }
     };
-    route.stretches.iter().map(piece).collect()
+    let parts: Vec<Stretch> = route.stretches.iter().flat_map(|stretch| route.parts(stretch, quantity)).collect();
+    parts.iter().map(piece).collect()
 }
 
 /// The value as a number.
@@ -114,7 +118,7 @@ fn with_extremes(value: &dyn Fn(f64) -> Option<f64>, points: &mut Vec<(f64, f64)
     let mut turns = Vec::new();
     let mut turn = |sign: f64, three: [(f64, f64); 3]| {
         let from_above = |x: f64| Some(sign * value(x)?);
-        let x = vertex(value, three, size).or_else(|| summit(&from_above, three[0].0, three[2].0));
+        let x = vertex(value, three, size).or_else(|| peak(&from_above, [three[0].0, three[2].0]));
         turns.extend(x.and_then(|x| Some((x, value(x)?))));
     };
     for three in points.windows(3) {
@@ -156,6 +160,30 @@ fn vertex(value: &dyn Fn(f64) -> Option<f64>, [a, b, c]: [(f64, f64); 3], size: 
     let elsewhere = 0.5 * (at + if at - a.0 > c.0 - at { a.0 } else { c.0 });
     let meets = |x: f64| value(x).is_some_and(|f| (f - parabola(x)).abs() <= ROUNDING * size);
     (inside && meets(at) && meets(elsewhere)).then_some(at)
+}
+
+/// The place of the largest value between two: of a corner, where two straight lines meet, to rounding, and of what is round
+/// as near as its values tell.
+fn peak(value: &dyn Fn(f64) -> Option<f64>, [a, b]: [f64; 2]) -> Option<f64> {
+    let mut best = summit(value, a, b)?;
+    let mut height = value(best)?;
+    for share in CORNER {
+        let h = share * (b - a);
+        let line = |side: f64| {
+            let places = [best + side * h, best + 2.0 * side * h];
+            let inside = places.iter().all(|x| (a..=b).contains(x));
+            let [f, g] = if inside { [value(places[0])?, value(places[1])?] } else { return None };
+            Some((places[0], f, (g - f) / (places[1] - places[0])))
+        };
+        let (Some((x, f, rise)), Some((y, g, fall))) = (line(-1.0), line(1.0)) else { continue };
+        let at = x + (g - f - fall * (y - x)) / (rise - fall);
+        if let Some(there) = Some(at).filter(|at| (x..=y).contains(at)).and_then(value)
+            && there >= height
+        {
+            (best, height) = (at, there);
+        }
+    }
+    Some(best)
 }
 
 /// The place of the largest value between two, by the golden section.

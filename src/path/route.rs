@@ -14,7 +14,7 @@ use super::start::PathError;
 use super::way::Way;
 use crate::answer::record::PairState;
 use crate::model::parameter::ParameterValues;
-use crate::model::quantity::Quantity;
+use crate::model::quantity::{Bend, Quantity, fits};
 use crate::solve::case::There;
 use crate::solve::error::SolveError;
 use crate::solve::problem::factors;
@@ -39,6 +39,14 @@ pub struct Stretch {
     leg: usize,
     /// The knot or scheme at its end nearer to the start of the path.
     index: usize,
+}
+
+impl Stretch {
+    /// The parts into which places within it, upwards, cut it.
+    pub fn cut(self, places: &[f64]) -> Vec<Stretch> {
+        let ends: Vec<f64> = std::iter::once(self.from).chain(places.iter().copied()).chain([self.to]).collect();
+        ends.windows(2).map(|ends| Stretch { from: ends[0], to: ends[1], ..self }).collect()
+    }
 }
 
 /// How well an answer over a parameter is known.
@@ -170,6 +178,48 @@ impl Route<'_> {
     /// Whether everything on it is straight between its breakpoints: a path over a load.
     pub fn is_straight(&self) -> bool {
         self.legs.iter().all(|leg| matches!(leg.way, Way::Load(_)))
+    }
+
+    /// What is said of a quantity where its extremes and zeros are not found for certain; `None` where they are, if the path
+    /// itself is exact.
+    pub fn doubt(&self, quantity: &Quantity) -> Option<String> {
+        let doubted = match quantity.bend(self.case.prepared.is_in_space()) {
+            Bend::Smooth => false,
+            Bend::Up | Bend::Down | Bend::UpBetweenTurns => !self.is_straight(),
+            Bend::Either => true,
+        };
+        doubted.then(|| {
+            format!(
+                "{quantity} may bend either way between two changes: it was looked at in many places and around its turns, and \
+                 what comes and goes between two of them is not seen"
+            )
+        })
+    }
+
+    /// Whether extremes and zeros of a quantity are found for certain.
+    pub fn is_exact(&self, quantity: &Quantity) -> bool {
+        self.known() == Known::Exactly && self.doubt(quantity).is_none()
+    }
+
+    /// The parts of a stretch in which a quantity bends one way, where that is known.
+    pub fn parts(&self, stretch: &Stretch, quantity: &Quantity) -> Vec<Stretch> {
+        let turns = match (quantity.bend(self.case.prepared.is_in_space()), quantity.pattern()) {
+            (Bend::UpBetweenTurns, Some(pattern)) if self.is_straight() => self.turns(stretch, pattern),
+            _ => Vec::new(),
+        };
+        stretch.cut(&turns)
+    }
+
+    /// Where friction of pairs of the plane that fit a pattern is 0 within a stretch, on a straight path.
+    fn turns(&self, stretch: &Stretch, pattern: &str) -> Vec<f64> {
+        let Stretch { from, to, .. } = *stretch;
+        let (Some(first), Some(last)) = (self.pairs(stretch, from), self.pairs(stretch, to)) else { return Vec::new() };
+        let turning = first.iter().zip(&last).filter(|(a, b)| fits(pattern, &a.id) && a.x_t * b.x_t < 0.0);
+        let mut places: Vec<f64> = turning.map(|(a, b)| from + (to - from) * (a.x_t / (a.x_t - b.x_t))).collect();
+        places.retain(|at| from < *at && *at < to);
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        places
     }
 
     /// Why the path does not lead to both ends of the range, and how it was followed where not exactly, in sentences.

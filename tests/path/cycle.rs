@@ -352,9 +352,7 @@ fn what_repeats_is_proved_in_rationals() {
 fn what_is_not_proved_is_no_collapse() {
     for (m, kind) in [(3, "collapses"), (11, "undecided")] {
         let mut stiffness = vec![vec![0.0; 2 * m]; 2 * m];
-        for i in 0..m {
-            stiffness[i][i] = 1000.0;
-        }
+        (0..m).for_each(|i| stiffness[i][i] = 1000.0);
         for i in m..2 * m - 1 {
             for (a, b, by) in [(i, i, 1.0), (i + 1, i + 1, 1.0), (i, i + 1, -1.0), (i + 1, i, -1.0)] {
                 stiffness[a][b] += 1000.0 * by;

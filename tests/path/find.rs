@@ -1,14 +1,14 @@
 //! `find` and `envelope` over parameters, against closed forms.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use stickslip::model::embedded;
 use stickslip::model::load::load_text;
 use stickslip::session::{Output, Session};
 use stickslip::view::style::Style;
 use stickslip::watch::Quiet;
 
-use super::common::lines;
 pub(super) use super::common::lines::{report, session, text};
+use super::common::{lines, scenario_text};
 
 pub(super) fn beam() -> Session {
     lines::embedded("beam")
@@ -272,6 +272,15 @@ fn zeros_and_extremes_between_breakpoints_are_found() {
     let half = 3.0_f64.sqrt() / 8.0;
     near(&found["holds"][0][0], 0.5 - half, 1e-9);
     near(&found["holds"][0][1], 0.5 + half, 1e-9);
+    // The largest of numbers that bend upwards does so too; their least bends either way, and is not called exact.
+    for (quantity, exact) in [("max mises", true), ("min s2", true), ("min mises", false), ("max s2", false)] {
+        for command in [format!("envelope {quantity} over t 0..0.9"), format!("find t 0..0.9 where {quantity} > 5")] {
+            let found = report(&mut session, &command).unwrap();
+            assert_eq!(found["exact"], exact, "{command}: {found}");
+            let notes = found["notes"].to_string();
+            assert_eq!(notes.contains(&format!("{quantity} may bend either way")), !exact, "{command}: {notes}");
+        }
+    }
 }
 
 /// The heated pipe: the moment at its nozzle is zero near f = 0.1287 and largest where c1 begins to stick.
@@ -417,4 +426,46 @@ fn the_largest_moment_along_a_bar_is_searched_where_its_place_wanders() {
     let half = 10.0 * 0.2_f64.sqrt();
     near(&found["holds"][0][0], 10.0 - half, 1e-8);
     near(&found["holds"][0][1], 10.0 + half, 1e-8);
+}
+
+/// Nodes on springs of their own whose forces are straight lines in t: x_n = n + n' t, x_τ = −s (t − p), f = 1.
+fn on_springs(lines: &[[f64; 4]]) -> Session {
+    let m = lines.len();
+    let mut stiffness = vec![vec![0.0; 2 * m]; 2 * m];
+    (0..2 * m).for_each(|i| stiffness[i][i] = 1.0);
+    let of = |pick: fn(&[f64; 4]) -> [f64; 2]| -> Vec<f64> {
+        [0, 1].iter().flat_map(|k| lines.iter().map(|line| pick(line)[*k])).collect()
+    };
+    lines::read(&scenario_text(json!({
+        "parameters": { "t": 0 },
+        "contact_system": {
+            "pairs": (0..m).map(|i| format!("c{i}")).collect::<Vec<_>>(), "stiffness": stiffness, "friction": vec![1; m],
+            "loads": {
+                "fixed": { "vector": of(|[n, _, s, p]| [*n, s * p]) },
+                "moving": { "factor": "t", "vector": of(|[_, rise, s, _]| [*rise, -s]) }
+            }
+        }
+    })))
+}
+
+/// Reserves h − s |t − p| are tents. A narrow one stands out over a flat one where no quarter of the way shows it; the largest
+/// x_n is least in the corner where two straight lines meet.
+#[test]
+fn the_largest_of_many_is_found_for_certain() {
+    let (flat, top, slope, place) = (1.9, 1.9001, 1.9, 0.61803);
+    let mut session = on_springs(&[[flat, 0.0, 0.0, 0.0], [top, 0.0, slope, place]]);
+    let found = report(&mut session, "envelope max reserve * over t 0..1").unwrap();
+    assert_eq!(found["exact"], true, "{found}");
+    near(&found["envelope"][0]["largest"]["value"], top, 1e-14);
+    near(&found["envelope"][0]["largest"]["at"]["t"], place, 1e-14);
+    let found = report(&mut session, "find t 0..1 where max reserve * > 1.90005").unwrap();
+    assert_eq!(found["exact"], true, "{found}");
+    let half = 0.00005 / slope;
+    near(&found["holds"][0][0], place - half, 1e-12);
+    near(&found["holds"][0][1], place + half, 1e-12);
+    let mut session = on_springs(&[[1.0, 0.3, 0.0, 0.0], [1.2, -0.41, 0.0, 0.0]]);
+    let found = report(&mut session, "envelope max x_n * over t 0..1").unwrap();
+    let corner = 0.2 / 0.71;
+    near(&found["envelope"][0]["least"]["at"]["t"], corner, 1e-14);
+    near(&found["envelope"][0]["least"]["value"], 1.0 + 0.3 * corner, 1e-14);
 }

@@ -3,6 +3,7 @@
 //! A quantity is a word and its arguments. [`words`] has the table of the words, [`read`](mod@read) reads them against
 //! the names of a scenario; the values are read by [`crate::path::quantity`].
 
+mod bend;
 mod list;
 mod names;
 mod of_bar;
@@ -14,6 +15,7 @@ use std::fmt;
 
 use super::units::Units;
 
+pub use bend::Bend;
 pub use list::{read_all, read_text};
 pub use names::{Names, fits};
 pub use of_bar::Internal;
@@ -128,6 +130,14 @@ impl Quantity {
             Quantity::Load(which, _) => Meaning::Load(*which),
             Quantity::Critical(_) => Meaning::Critical,
             Quantity::Stage(..) | Quantity::Probe(..) => Meaning::Stage,
+        }
+    }
+
+    /// The pattern of the pairs that it asks for.
+    pub fn pattern(&self) -> Option<&str> {
+        match self.innermost() {
+            Quantity::Pairs(_, _, pattern) | Quantity::Count(_, pattern) => Some(pattern),
+            _ => None,
         }
     }
 

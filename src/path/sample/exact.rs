@@ -96,6 +96,7 @@ pub fn of_one(case: Case<'_>, variable: &Variable, quantities: &[Quantity]) -> R
         let route = Route::new(case, name, range)?;
         let followed = |route: &Route<'_>| route.stretches.iter().map(|stretch| stretch.to - stretch.from).sum::<f64>();
         if let Some(route) = route.filter(|route| (followed(route) - answers).abs() <= SAME * length) {
+            notes.extend(quantities.iter().filter_map(|quantity| route.doubt(quantity)));
             spreads = quantities.iter().map(|quantity| spread(&route, variable, quantity)).collect();
         }
     }

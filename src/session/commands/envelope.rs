@@ -20,7 +20,8 @@ use crate::view::path::exact;
 ///
 /// With the combination, or the place, that governs. Where an exact path leads over a single parameter (loads,
 /// friction) the place is exact; otherwise it is that of a grid of answers, refined around its extremes, and said to
-/// be so. A range left out is that of the slider.
+/// be so. A quantity that may bend either way between two changes (`min mises`, `max s2`; over friction any largest or
+/// least of several) is looked at closely but not called exact. A range left out is that of the slider.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  envelope\n  envelope x_n c1, max u over combinations\n  envelope x_t c1 over f 0..1\n  envelope max u over F 50..150 F2 0..200"

@@ -25,7 +25,8 @@ use crate::session::{CommandError, Next, Output, Session, worker};
 /// and in order, in space found along Coulomb's cone in steps; elsewhere (geometry, stiffness) they are brackets
 /// between runs of their own. `find least|most NAME [A..B] where outcome answer` brackets the first value with an
 /// answer between a checked answer and a proved collapse; with another condition it is the first or the last place at
-/// which that holds.
+/// which that holds. Of a quantity that may bend either way between two changes (`min mises`) not all places need show;
+/// a note says so.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  find F2 0..400 where z_t c3 > 0\n  find f 0..1 where x_t c1 = -50\n  find F2 where state c3 = slip+\n  find most F2 where outcome answer"
