@@ -9,6 +9,7 @@ use crate::lcp::outcome::Point;
 use crate::lcp::pivot::{Pivot, PivotLog};
 use crate::lcp::variable::Variable;
 use crate::model::rules::TieBreak;
+use crate::watch::Watch;
 
 /// Most vertices that are computed afresh to look for zeros.
 const MOST_VERTICES: usize = 100;
@@ -82,8 +83,14 @@ fn reason(pivot: &Pivot, tie_break: TieBreak) -> &'static str {
     }
 }
 
-/// Looks through a run; `last` is its last vertex.
-pub fn ties(naming: &Naming, log: &PivotLog, last: &Point, tie_break: TieBreak) -> TieReport {
+/// Looks through a run; `last` is its last vertex. `None` where it was stopped.
+pub fn ties(
+    naming: &Naming,
+    log: &PivotLog,
+    last: &Point,
+    tie_break: TieBreak,
+    watch: &dyn Watch,
+) -> Option<TieReport> {
     let pivots = log.recorded();
     let names = |variables: &[Variable]| variables.iter().map(|v| naming.name(*v)).collect();
     let tied = pivots
@@ -98,22 +105,25 @@ pub fn ties(naming: &Naming, log: &PivotLog, last: &Point, tie_break: TieBreak) 
         .collect();
     let lcp = naming.lcp();
     let first = pivots.len().saturating_sub(MOST_VERTICES);
-    let degenerate = (first..pivots.len())
-        .filter_map(|step| {
-            let basis = Basis::after(&pivots[..=step]);
-            let zeros = if step + 1 == log.count() {
-                zero_basics(lcp, &basis, last)
-            } else {
-                zero_basics(lcp, &basis, &vertex(lcp, &basis)?)
-            };
-            (!zeros.is_empty()).then(|| Degenerate { step, zeros: names(&zeros) })
-        })
-        .collect();
-    TieReport {
+    let mut degenerate = Vec::new();
+    for step in first..pivots.len() {
+        if watch.stop() {
+            return None;
+        }
+        let basis = Basis::after(&pivots[..=step]);
+        let zeros = match (step + 1 == log.count()).then(|| last.clone()).or_else(|| vertex(lcp, &basis)) {
+            Some(point) => zero_basics(lcp, &basis, &point),
+            None => continue,
+        };
+        if !zeros.is_empty() {
+            degenerate.push(Degenerate { step, zeros: names(&zeros) });
+        }
+    }
+    Some(TieReport {
         rule: rule_words(tie_break, naming),
         pivots: log.count(),
         ties: tied,
         degenerate,
         complete: first == 0 && log.is_complete(),
-    }
+    })
 }

@@ -58,7 +58,7 @@ pub fn envelope(case: Case<'_>, axes: &[Axis], quantities: &[Quantity]) -> Resul
     if let ([axis], true) = (axes, quantities.iter().all(Quantity::is_of_state))
         && let Some(route) = Route::new(case, &axis.name, axis.range)?
     {
-        return Ok(on_route(&route, axis, quantities));
+        return on_route(&route, axis, quantities);
     }
     on_grid(case, axes, quantities)
 }
@@ -75,10 +75,10 @@ fn take(peaks: &mut Peaks, value: f64, at: &[f64]) {
     }
 }
 
-fn on_route(route: &Route<'_>, axis: &Axis, quantities: &[Quantity]) -> Envelope {
-    let of = |quantity: &Quantity| {
+fn on_route(route: &Route<'_>, axis: &Axis, quantities: &[Quantity]) -> Result<Envelope, PathError> {
+    let of = |quantity: &Quantity| -> Result<Peaks, PathError> {
         let mut peaks: Peaks = [None, None];
-        for piece in profile(route, quantity) {
+        for piece in profile(route, quantity)? {
             match piece.shape {
                 Shape::Curve(points) => points.iter().for_each(|(at, value)| take(&mut peaks, *value, &[*at])),
                 Shape::Steady(Value::Number(value)) => take(&mut peaks, value, &[piece.stretch.from]),
@@ -88,7 +88,7 @@ fn on_route(route: &Route<'_>, axis: &Axis, quantities: &[Quantity]) -> Envelope
         for peak in peaks.iter_mut().flatten() {
             peak.change = peak.at.first().and_then(|at| route.change(*at));
         }
-        peaks
+        Ok(peaks)
     };
     let [low, high] = route.covered();
     let mut notes: Vec<String> = route.notes();
@@ -97,12 +97,12 @@ fn on_route(route: &Route<'_>, axis: &Axis, quantities: &[Quantity]) -> Envelope
         let [low, high] = [low, high].map(short);
         notes.insert(0, format!("over {} from {low} to {high} only, as far as the path leads", axis.name));
     }
-    Envelope {
-        peaks: quantities.iter().map(of).collect(),
+    Ok(Envelope {
+        peaks: quantities.iter().map(of).collect::<Result<_, _>>()?,
         exact: quantities.iter().all(|quantity| route.is_exact(quantity)),
         covered: Some(route.covered()),
         notes,
-    }
+    })
 }
 
 /// The quantities of an answer of its own; `None` without one.

@@ -109,14 +109,14 @@ pub fn find(
 ) -> Result<Found, PathError> {
     let route = if quantity.is_of_state() { Route::new(case, name, range)? } else { None };
     match route {
-        Some(route) => Ok(on_route(&route, range, quantity, wanted)),
+        Some(route) => on_route(&route, range, quantity, wanted),
         None => on_grid(case, name, range, quantity, wanted),
     }
 }
 
-fn on_route(route: &Route<'_>, range: [f64; 2], quantity: &Quantity, wanted: &Wanted) -> Found {
+fn on_route(route: &Route<'_>, range: [f64; 2], quantity: &Quantity, wanted: &Wanted) -> Result<Found, PathError> {
     let mut parts: Vec<Part> = Vec::new();
-    for piece in profile(route, quantity) {
+    for piece in profile(route, quantity)? {
         let (from, to) = (piece.stretch.from, piece.stretch.to);
         match piece.shape {
             Shape::Nothing => parts.push(Part { from, to, side: None, ends: [None, None] }),
@@ -168,7 +168,7 @@ fn on_route(route: &Route<'_>, range: [f64; 2], quantity: &Quantity, wanted: &Wa
         found.notes.push("the path does not lead through the whole range".to_owned());
     }
     found.notes.extend(route.doubt(quantity));
-    found
+    Ok(found)
 }
 
 /// Intervals and places from the parts, in order.

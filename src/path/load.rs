@@ -24,6 +24,7 @@ use crate::lcp::problem::NOISE;
 use crate::solve::problem::{contact_problem, factors};
 use crate::solve::{Case, Prepared, Solved};
 use crate::text::words::short;
+use crate::watch::Watch;
 
 /// A followed load path. Between two knots everything is affine in the factor.
 #[derive(Clone, Debug)]
@@ -160,7 +161,7 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadRea
         *last = to;
     }
     followed.look_beyond(case)?;
-    followed.describe(prepared);
+    followed.describe(prepared, watch)?;
     Ok(followed)
 }
 
@@ -322,17 +323,18 @@ impl LoadPath {
     }
 
     /// Pairs and breakpoints from the knots.
-    fn describe(&mut self, prepared: &Prepared) {
+    fn describe(&mut self, prepared: &Prepared, watch: &dyn Watch) -> Result<(), PathError> {
         let knots = &self.path.knots;
-        self.pairs = knots.iter().map(|knot| self.pairs_of(prepared, &knot.point)).collect();
-        let mut halfway: Vec<Vec<PairState>> = knots
-            .windows(2)
-            .map(|ends| {
-                let point = between(&ends[0].point, &ends[1].point, 0.5);
-                self.pairs_of(prepared, &point)
-            })
-            .collect();
-        halfway.extend(self.after_last().map(|point| self.pairs_of(prepared, &point)));
+        // Each is a product with R, and there are as many as pairs change their states.
+        let read = |point: &Point| match watch.stop() {
+            true => Err(PathError::Interrupted),
+            false => Ok(self.pairs_of(prepared, point)),
+        };
+        let pairs: Vec<Vec<PairState>> = knots.iter().map(|knot| read(&knot.point)).collect::<Result<_, _>>()?;
+        let between = knots.windows(2).map(|ends| between(&ends[0].point, &ends[1].point, 0.5));
+        let halfway: Vec<Vec<PairState>> =
+            between.chain(self.after_last()).map(|point| read(&point)).collect::<Result<_, _>>()?;
+        self.pairs = pairs;
         for (k, after) in halfway.iter().enumerate() {
             let before = match k {
                 0 => &self.pairs[0],
@@ -345,6 +347,7 @@ impl LoadPath {
             let at_constant_load = k > 0 && knots[k].t == knots[k - 1].t;
             self.breakpoints.push(Breakpoint::new(self.factors[k], k, changes, at_constant_load));
         }
+        Ok(())
     }
 
     /// How the path ended, in a sentence.

@@ -2,6 +2,7 @@
 
 use super::quantity::Value;
 use super::route::{Route, Stretch};
+use super::start::PathError;
 use crate::model::quantity::Quantity;
 
 /// A parabola stands for the function where it meets it at the quarters to this share of the largest value.
@@ -49,15 +50,21 @@ fn is_steady(quantity: &Quantity) -> bool {
 }
 
 /// The quantity over all stretches of a path.
-pub fn profile(route: &Route<'_>, quantity: &Quantity) -> Vec<Piece> {
+///
+/// # Errors
+/// Stopped from outside.
+pub fn profile(route: &Route<'_>, quantity: &Quantity) -> Result<Vec<Piece>, PathError> {
     let piece = |stretch: &Stretch| {
+        if route.watch().stop() {
+            return Err(PathError::Interrupted);
+        }
         let shape = if is_steady(quantity) {
             let middle = 0.5 * (stretch.from + stretch.to);
             route.value(stretch, middle, quantity).map_or(Shape::Nothing, Shape::Steady)
         } else {
             curve(route, stretch, quantity).map_or(Shape::Nothing, Shape::Curve)
         };
-        Piece { stretch: *stretch, shape }
+        Ok(Piece { stretch: *stretch, shape })
     };
     let parts: Vec<Stretch> = route.stretches.iter().flat_map(|stretch| route.parts(stretch, quantity)).collect();
     parts.iter().map(piece).collect()

@@ -19,6 +19,7 @@ use crate::solve::case::There;
 use crate::solve::error::SolveError;
 use crate::solve::problem::factors;
 use crate::solve::{Case, Solved};
+use crate::watch::Watch;
 
 /// Finds an answer to start from, or gives the word for how the run ended without one.
 pub type Start<'s> = &'s dyn Fn(Case<'_>) -> Result<Result<Solved, &'static str>, SolveError>;
@@ -161,6 +162,11 @@ impl Route<'_> {
         for (index, [a, b]) in ends.into_iter().enumerate().filter(|(_, [a, b])| a != b) {
             self.stretches.push(Stretch { from: a.min(b), to: a.max(b), leg: number, index });
         }
+    }
+
+    /// What tells those who look at it to stop.
+    pub fn watch(&self) -> &dyn Watch {
+        self.case.watch
     }
 
     /// The values of the parameter between which the answer was followed.

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::case::Case;
 use super::cold::Extent;
+use super::error::QuestionError;
 use super::prepared::{Geometry, Prepared};
 use super::problem::contact_problem;
 use super::state::{RunData, Solved};
@@ -39,14 +40,19 @@ impl Solved {
     }
 
     /// Ties and degenerate vertices of the run.
-    pub fn ties(&self, prepared: &Prepared) -> Option<TieReport> {
-        let naming = self.naming(prepared)?;
+    ///
+    /// # Errors
+    /// Stopped from outside.
+    pub fn ties(&self, prepared: &Prepared, watch: &dyn Watch) -> Result<Option<TieReport>, QuestionError> {
+        let Some(naming) = self.naming(prepared) else { return Ok(None) };
         let pivots = self.pivots();
         let last = match &self.run {
-            RunData::Contact { last, .. } => last.clone(),
-            RunData::Plain { lcp, .. } => vertex(lcp, &pivots.basis())?,
+            RunData::Contact { last, .. } => Some(last.clone()),
+            RunData::Plain { lcp, .. } => vertex(lcp, &pivots.basis()),
         };
-        Some(ties(&naming, pivots, &last, self.answer.rules.tie_break))
+        let Some(last) = last else { return Ok(None) };
+        let report = ties(&naming, pivots, &last, self.answer.rules.tie_break, watch);
+        report.map(Some).ok_or(QuestionError::Interrupted)
     }
 
     /// The dictionary after pivot `step`; `None` as step: before the entry of p.

@@ -31,6 +31,7 @@ mod session;
 mod stages;
 mod stages_at_a_stop;
 mod stages_in_space;
+mod stopped;
 mod sweep;
 mod sweep_points;
 mod trace_in_space;

@@ -97,7 +97,8 @@ pub fn of_one(case: Case<'_>, variable: &Variable, quantities: &[Quantity]) -> R
         let followed = |route: &Route<'_>| route.stretches.iter().map(|stretch| stretch.to - stretch.from).sum::<f64>();
         if let Some(route) = route.filter(|route| (followed(route) - answers).abs() <= SAME * length) {
             notes.extend(quantities.iter().filter_map(|quantity| route.doubt(quantity)));
-            spreads = quantities.iter().map(|quantity| spread(&route, variable, quantity)).collect();
+            let of = |quantity| spread(&route, variable, quantity);
+            spreads = quantities.iter().map(of).collect::<Result<_, _>>()?;
         }
     }
     Ok(Some(Exact { collapse, undecided, spreads, notes }))
@@ -181,8 +182,8 @@ struct Profile<'a> {
     known: f64,
 }
 
-fn spread(route: &Route<'_>, variable: &Variable, quantity: &Quantity) -> Spread {
-    let pieces = profile(route, quantity);
+fn spread(route: &Route<'_>, variable: &Variable, quantity: &Quantity) -> Result<Spread, PathError> {
+    let pieces = profile(route, quantity)?;
     let share = |piece: &Piece| variable.of.share(piece.stretch.to) - variable.of.share(piece.stretch.from);
     let (mut slopes, mut steady) = (Vec::new(), Vec::new());
     let mut words = Words::default();
@@ -209,7 +210,7 @@ fn spread(route: &Route<'_>, variable: &Variable, quantity: &Quantity) -> Spread
     let (known, words) = (found.known + of_words, words.shares(of_words));
     let mut spread = Spread { quantity: quantity.to_string(), known, words, ..Spread::default() };
     found.tell(&mut spread);
-    spread
+    Ok(spread)
 }
 
 impl Profile<'_> {

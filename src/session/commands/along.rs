@@ -43,9 +43,13 @@ impl Session {
         path: &PathRecord,
         quantity: &Quantity,
         watch: &dyn Watch,
-    ) -> Vec<Option<f64>> {
+    ) -> Result<Vec<Option<f64>>, CommandError> {
         let number = |facts: &Facts<'_>| facts.value(quantity).ok()?.number();
-        path.places.iter().map(|place| self.with_place(prepared, path, place, watch, number).ok().flatten()).collect()
+        let at = |place| match watch.stop() {
+            true => Err(CommandError::Interrupted),
+            false => Ok(self.with_place(prepared, path, place, watch, number).ok().flatten()),
+        };
+        path.places.iter().map(at).collect()
     }
 
     /// The table of `trace … of`: as JSON and as rows.
@@ -62,8 +66,8 @@ impl Session {
                  `sweep NAME A..B N --columns '{quantity}'` does"
             )));
         }
-        let all = quantities.iter().map(|quantity| (quantity.clone(), self.along(prepared, path, quantity, watch)));
-        let all: Vec<_> = all.collect();
+        let of = |quantity: &Quantity| Ok((quantity.clone(), self.along(prepared, path, quantity, watch)?));
+        let all: Vec<_> = quantities.iter().map(of).collect::<Result<_, CommandError>>()?;
         match all.iter().find(|(_, values)| values.iter().all(Option::is_none)) {
             Some((quantity, _)) => {
                 let why = |facts: &Facts<'_>| facts.value(quantity).err();

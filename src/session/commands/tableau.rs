@@ -45,8 +45,9 @@ impl Action for Tableau {
 impl Session {
     pub(in crate::session) fn report_ties(&self, io: &mut Output<'_>) -> Result<(), CommandError> {
         let (prepared, solved) = self.both()?;
-        let report =
-            solved.ties(&prepared).ok_or_else(|| CommandError::Refused("ties: the last vertex is singular".into()))?;
+        let report = solved
+            .ties(&prepared, io.watch)?
+            .ok_or_else(|| CommandError::Refused("ties: the last vertex is singular".into()))?;
         io.show(&report, |out, style| view::ties::write(out, &report, style))?;
         Ok(())
     }
