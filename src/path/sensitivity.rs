@@ -6,6 +6,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::rate::{fixed_place, problem_rates, rate, rate_lcp, with_friction_as_cohesion};
 use super::start::{PathError, final_basis, state_of};
+use crate::answer::attempt::AttemptEngine;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{PairState, Slip};
 use crate::contact::cone_rates::{Standing, rates_of_unknowns};
@@ -166,7 +167,16 @@ fn determined(problem: &ContactProblem, solved: &Solved) -> Result<ContactProble
 
 impl<'a> End<'a> {
     fn of(system: &'a ContactSystem, solved: &'a Solved) -> Result<End<'a>, PathError> {
-        let nothing = || PathError::Missing("there is no answer whose derivatives could be taken".to_owned());
+        let nothing = || {
+            let why = match solved.answer.is_answer() && solved.answer.rules.engine == AttemptEngine::AtRest {
+                true => {
+                    "the answer is known with the joints that repeat one another at rest, and what these carry is not determined: it \
+                     has no derivatives; `sweep` solves at values beside it"
+                }
+                false => "there is no answer whose derivatives could be taken",
+            };
+            PathError::Missing(why.to_owned())
+        };
         let RunData::Contact { contact, problem, .. } = &solved.run else { return Err(nothing()) };
         if system.is_in_space() {
             return match &solved.answer.polygon {

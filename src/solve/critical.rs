@@ -31,7 +31,7 @@ impl Prepared {
         let Some(system) = self.system() else {
             return refused("a bare LCP has no friction".to_owned());
         };
-        let instead = format!("`trace {parameter}` follows the answer over it");
+        let instead = format!("`find {parameter} A..B where outcome answer` tells where there are answers");
         if let Some(refusal) = system.dependence_refusal("critical", &instead) {
             return refused(refusal);
         }

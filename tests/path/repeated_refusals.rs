@@ -55,7 +55,7 @@ fn what_is_refused_says_what_goes_instead() {
             ("check exact", "check exact", "`check`", "check"),
             ("enumerate", "enumerate", "`export lcp FILE.json`", &written),
             (&format!("export system {system}"), "export system", "`export lcp FILE.json`", &written),
-            ("critical f", "critical", "`trace f`", "trace f to 0.5"),
+            ("critical f", "critical", "`find f A..B where outcome answer`", "find f 0.2..0.5 where outcome answer"),
             ("cycle P 0..1 from all", "cycle … from all", "`from PAIR=SLIP …`", &from),
         ] {
             let mut session = guide(in_space);

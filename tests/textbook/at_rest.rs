@@ -209,6 +209,8 @@ fn an_answer_at_rest_is_an_answer_to_every_command() {
         let refused = report(&mut session, command).expect_err("no path");
         assert!(refused.contains("no path leads on from the answer at f = 0.6"), "{refused}");
     }
+    let refused = report(&mut session, "sensitivity").expect_err("no derivatives");
+    assert!(refused.contains("at rest") && refused.contains("`sweep`"), "{refused}");
     for range in ["0..5", "3..5"] {
         let [from, to] = [&range[..1], &range[3..]];
         let said = text(&mut session, &format!("find push {range} where x_n c0 > 0"));
