@@ -37,6 +37,7 @@ mod rigid;
 mod rings;
 mod rollers;
 mod settlements;
+mod skipped;
 mod slope;
 mod space;
 mod space_scenarios;

@@ -10,7 +10,7 @@ use super::reader::{Cursor, Fields};
 use super::sides::{self, Sides};
 use crate::model::dimension::projection;
 use crate::model::memory;
-use crate::model::pair::{LawKind, Pair};
+use crate::model::pair::{LawKind, Pair, Weights};
 use crate::model::parameter::Number;
 use crate::model::structure::{Dimension, EdgeContact};
 use crate::model::vector::cross;
@@ -54,6 +54,15 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
     }
     let a_border = if border == "edge" { "an `edge`" } else { "a `face`" };
     let is_border = fields.entry(border).is_some();
+    let skipped = match fields.entry("skip") {
+        None => Some(Vec::new()),
+        Some(entry) if is_border => indices(entry.value()),
+        Some(entry) => {
+            entry.key_problem(format!("`skip` belongs to contacts of {a_border}"), "remove it");
+            None
+        }
+    };
+    let out: HashSet<usize> = skipped.iter().flatten().map(|(_, index)| *index).collect();
     let sides = match (fields.optional("node"), fields.entry(border)) {
         (Some(_), Some(entry)) => {
             entry.key_problem(
@@ -62,8 +71,8 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             );
             None
         }
-        (None, Some(face)) if border == "face" => face_sides::of_face(builder, &fields, face.value()),
-        (None, Some(edge)) => sides::of_edge(builder, &fields, edge.value()),
+        (None, Some(face)) if border == "face" => face_sides::of_face(builder, &fields, face.value(), &out),
+        (None, Some(edge)) => sides::of_edge(builder, &fields, edge.value(), &out),
         (Some(node), None) => sides::of_node(builder, &fields, node),
         (None, None) => {
             cursor.problem(
@@ -76,6 +85,7 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
             None
         }
     };
+    let sides = sides.map(|sides| sides.without(&out));
     let tangents = match fields.optional("tangent") {
         Some(at) => tangents(at, sides.as_ref()),
         None => sides.as_ref().map(|sides| {
@@ -89,20 +99,9 @@ fn contact<'d>(builder: &mut Builder<'d>, cursor: Cursor<'d>) -> Option<Vec<Pair
     }
     let count = sides.as_ref().map(|sides| sides.nodes.len());
     let numbers = law_numbers(&fields, law, sides.as_ref(), is_border);
-    let skipped = fields
-        .entry("skip")
-        .map(|entry| {
-            if is_border {
-                skipped(entry.value(), count, border)
-            } else {
-                entry.key_problem(format!("`skip` belongs to contacts of {a_border}"), "remove it");
-                None
-            }
-        })
-        .unwrap_or(Some(HashSet::new()));
-    let (id, law, sides, numbers, skipped, tangents) = (id?, law?, sides?, numbers?, skipped?, tangents?);
-    let kept = sides.weights.iter().enumerate().filter(|(index, _)| !skipped.contains(index));
-    let pairs = kept.filter_map(|(index, weights)| {
+    let left = skipped.and_then(|skipped| leaves_pairs(&fields, &skipped, count, border));
+    let (id, law, sides, numbers, (), tangents) = (id?, law?, sides?, numbers?, left?, tangents?);
+    let pairs = sides.weights.iter().enumerate().filter_map(|(index, weights)| {
         Some(Pair {
             id: if is_border { format!("{id}[{index}]") } else { id.to_string() },
             node: sides.nodes[index],
@@ -130,8 +129,12 @@ fn border(builder: &Builder<'_>) -> &'static str {
 /// The two tangents of every pair in space from a vector whose projection on the plane of contact is t1.
 fn tangents<'d>(at: Cursor<'d>, sides: Option<&Sides>) -> Option<Vec<Vec<[f64; 3]>>> {
     let wanted = at.direction("tangent")?;
-    let of = |&normal: &[f64; 3]| projection(wanted, normal).map(|t| vec![t, cross(normal, t)]);
-    let found: Option<Vec<_>> = sides?.normals.iter().map(of).collect();
+    let sides = sides?;
+    let of = |(weights, &normal): (&Option<Weights>, &[f64; 3])| match weights {
+        Some(_) => projection(wanted, normal).map(|t| vec![t, cross(normal, t)]),
+        None => Some(Vec::new()),
+    };
+    let found: Option<Vec<_>> = sides.weights.iter().zip(&sides.normals).map(of).collect();
     if found.is_none() {
         at.problem(
             "the tangent points along the normal, so it gives no direction in the plane of contact",
@@ -239,29 +242,35 @@ fn geometry(cursor: Cursor<'_>, sides: &Sides) -> Option<Vec<Number>> {
     Some(sides.gaps.as_ref()?.iter().map(|gap| Number::Value(*gap)).collect())
 }
 
-fn skipped(cursor: Cursor<'_>, count: Option<usize>, border: &str) -> Option<HashSet<usize>> {
-    let mut skipped = HashSet::new();
-    let mut is_right = true;
-    for entry in cursor.list()? {
-        let Some(index) = entry.whole("an index in `skip`", 0) else {
-            is_right = false;
-            continue;
-        };
-        let Some(count) = count else { continue };
-        if index >= count {
-            entry.problem(
-                format!("the {border} has no pair {index}: it has {count} nodes"),
-                format!("pairs count from 0 to {}", count - 1),
-            );
-            is_right = false;
-        }
-        skipped.insert(index);
+/// The entries of `skip`.
+fn indices<'d>(cursor: Cursor<'d>) -> Option<Vec<(Cursor<'d>, usize)>> {
+    let index = |entry: Cursor<'d>| Some((entry, entry.whole("an index in `skip`", 0)?));
+    // All of them are read before one ends it: each that is wrong is reported.
+    let found: Vec<_> = cursor.list()?.map(index).collect();
+    found.into_iter().collect()
+}
+
+/// Checks that what is skipped is there, and not all.
+fn leaves_pairs(
+    fields: &Fields<'_>,
+    skipped: &[(Cursor<'_>, usize)],
+    count: Option<usize>,
+    border: &str,
+) -> Option<()> {
+    let Some(count) = count else { return Some(()) };
+    let beyond: Vec<_> = skipped.iter().filter(|(_, index)| *index >= count).collect();
+    for (entry, index) in &beyond {
+        entry.problem(
+            format!("the {border} has no pair {index}: it has {count} nodes"),
+            format!("pairs count from 0 to {}", count - 1),
+        );
     }
-    if is_right && count == Some(skipped.len()) {
-        cursor.problem(format!("every pair of the {border} is skipped"), "remove the contact");
+    let out: HashSet<usize> = skipped.iter().map(|(_, index)| *index).collect();
+    if beyond.is_empty() && out.len() == count {
+        fields.required("skip")?.problem(format!("every pair of the {border} is skipped"), "remove the contact");
         return None;
     }
-    is_right.then_some(skipped)
+    beyond.is_empty().then_some(())
 }
 
 fn refuse_too_many(sources: &[(Cursor<'_>, usize)]) -> Option<()> {

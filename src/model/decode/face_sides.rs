@@ -1,14 +1,21 @@
 //! The two sides of a contact of faces: which nodes meet which, along which normals.
 
+use std::collections::HashSet;
+
 use super::builder::Builder;
 use super::reader::{Cursor, Fields};
-use super::sides::{GROUND, Gap, NEAR, Sides, gap_of, is_misspelt_ground, turned};
+use super::sides::{GROUND, Gap, NEAR, Sides, gap_of, is_misspelt_ground, matched, no_partner, turned};
 use crate::model::face::Face;
 use crate::model::pair::Pair;
 use crate::model::vector::{dot, length, way};
 
-/// The sides of a face against another one or the ground.
-pub fn of_face<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
+/// The sides of a face against another one or the ground; nodes at the positions in `skipped` need no partner.
+pub fn of_face<'d>(
+    builder: &Builder<'d>,
+    fields: &Fields<'d>,
+    at: Cursor<'d>,
+    skipped: &HashSet<usize>,
+) -> Option<Sides> {
     let face = builder.face(at);
     let normal = match fields.optional("normal") {
         Some(cursor) => Some(cursor.direction("normal")?),
@@ -20,10 +27,9 @@ pub fn of_face<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
     let shares = face.nodal_areas(&builder.structure.nodes);
     if against.string()? == GROUND {
         let nodes = face.nodes.clone();
-        let normals = match normal {
-            Some(normal) => vec![normal; nodes.len()],
-            None => outward(builder, at, &face)?.into_iter().map(turned).collect(),
-        };
+        let own = face.outward_normals(&builder.structure.nodes).into_iter().map(|normal| normal.map(turned)).collect();
+        let wanted = (0..nodes.len()).map(|k| (!skipped.contains(&k)).then_some(k)).collect::<Vec<_>>();
+        let normals = normals(builder, at, &face, (own, normal), &wanted)?;
         return Some(Sides { shares, ..Sides::on_ground(nodes, normals) });
     }
     if is_misspelt_ground(builder, against.string()?) {
@@ -39,10 +45,12 @@ pub fn of_face<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
         );
         return None;
     }
-    let own = outward(builder, against, &other)?;
-    let partners = partners(builder, [at, against], [&face, &other], &own, gap_of(fields) == Gap::Geometry)?;
-    let normals = partners.iter().map(|&partner| normal.unwrap_or(own[partner])).collect();
-    let pairs = face.nodes.iter().zip(&partners).map(|(&node, &at)| Some(Pair::of_nodes(node, Some(other.nodes[at]))));
+    let own = other.outward_normals(&builder.structure.nodes);
+    let apart = gap_of(fields) == Gap::Geometry;
+    let partners = Faces { builder, at, against, face: &face, other: &other, apart, skipped }.partners(&own)?;
+    let normals = normals(builder, against, &other, (own, normal), &partners)?;
+    let pairs =
+        face.nodes.iter().zip(&partners).map(|(&node, at)| Some(Pair::of_nodes(node, Some(other.nodes[(*at)?]))));
     Some(Sides { shares, ..Sides::new(builder, face.nodes.clone(), pairs.collect(), normals) })
 }
 
@@ -65,70 +73,79 @@ pub fn refuse_quadratic(at: Cursor<'_>, face: &Face, what: &str) -> Option<()> {
     None
 }
 
-/// Normals out of the body at the nodes.
-fn outward<'d>(builder: &Builder<'d>, at: Cursor<'d>, face: &Face) -> Option<Vec<[f64; 3]>> {
-    let normals = face.outward_normals(&builder.structure.nodes);
-    if let Some(node) = normals.iter().position(Option::is_none) {
+/// The normal given, or those of a face at these of its nodes (0 where none is wanted).
+fn normals<'d>(
+    builder: &Builder<'d>,
+    at: Cursor<'d>,
+    face: &Face,
+    (own, given): (Vec<Option<[f64; 3]>>, Option<[f64; 3]>),
+    wanted: &[Option<usize>],
+) -> Option<Vec<[f64; 3]>> {
+    let of = |node: &Option<usize>| given.or_else(|| node.map_or(Some([0.0; 3]), |node| own[node]));
+    let normals: Option<Vec<_>> = wanted.iter().map(of).collect();
+    if normals.is_none()
+        && let Some(node) = wanted.iter().flatten().find(|node| own[**node].is_none())
+    {
         at.problem(
             format!(
                 "the face {} has no normal at \"{}\": those of its sides cancel there",
                 at.quoted(),
-                builder.node_id(face.nodes[node])
+                builder.node_id(face.nodes[*node])
             ),
             "name one side of the body, or give `normal`",
         );
     }
-    normals.into_iter().collect()
+    normals
 }
 
-/// For each node of a face the position of its partner on the other one: at its place, or `apart` along the normal
-/// there.
-fn partners<'d>(
-    builder: &Builder<'d>,
-    [at, against]: [Cursor<'d>; 2],
-    [face, other]: [&Face; 2],
-    normals: &[[f64; 3]],
+struct Faces<'a, 'd> {
+    builder: &'a Builder<'d>,
+    at: Cursor<'d>,
+    against: Cursor<'d>,
+    face: &'a Face,
+    other: &'a Face,
+    /// Whether partners may be apart along the normal.
     apart: bool,
-) -> Option<Vec<usize>> {
-    let place = |node: usize| builder.structure.nodes[node].position;
-    let refuse = |message: String| {
-        against.problem(
-            format!("the faces do not match: {message}"),
-            "give both faces the same nodes; \"gap\": \"geometry\" lets partners be apart along the normal",
-        );
-        None
-    };
-    if face.nodes.len() != other.nodes.len() {
-        let (count, others) = (face.nodes.len(), other.nodes.len());
-        return refuse(format!("{} has {count} nodes, {} has {others}", at.quoted(), against.quoted()));
-    }
-    let first = place(face.nodes[0]);
-    let extent = face.nodes.iter().map(|&node| length(way(first, place(node)))).fold(0.0, f64::max);
-    let mut taken = vec![false; other.nodes.len()];
-    let mut partners = Vec::with_capacity(face.nodes.len());
-    for &node in &face.nodes {
-        // How far a node is from being a partner.
-        let off = |at: usize| {
-            let way = way(place(other.nodes[at]), place(node));
-            let along = if apart { dot(way, normals[at]) } else { 0.0 };
-            length([0, 1, 2].map(|c| way[c] - along * normals[at][c]))
+    /// Positions of the nodes that need no partner.
+    skipped: &'a HashSet<usize>,
+}
+
+impl Faces<'_, '_> {
+    /// For each node of the face the position of its partner on the other one: at its place, or `apart` along the normal
+    /// there.
+    fn partners(&self, normals: &[Option<[f64; 3]>]) -> Option<Vec<Option<usize>>> {
+        let (nodes, others) = (&self.face.nodes, &self.other.nodes);
+        // Where nothing is skipped either side hanging over is found by the count before any place.
+        if self.skipped.is_empty() && nodes.len() != others.len() {
+            let (at, against) = (self.at.quoted(), self.against.quoted());
+            return self.refuse(&format!("{at} has {} nodes, {against} has {}", nodes.len(), others.len()));
+        }
+        let place = |node: usize| self.builder.structure.nodes[node].position;
+        let extent = nodes.iter().map(|&node| length(way(place(nodes[0]), place(node)))).fold(0.0, f64::max);
+        let distance = |k: usize, at: usize| {
+            let way = way(place(others[at]), place(nodes[k]));
+            let n = normals[at].filter(|_| self.apart).unwrap_or([0.0; 3]);
+            let along = dot(way, n);
+            let off = length([0, 1, 2].map(|c| way[c] - along * n[c]));
+            (off <= NEAR * extent).then(|| length(way))
         };
-        let free = (0..taken.len()).filter(|&at| !taken[at] && other.nodes[at] != node);
-        let nearest = free.map(|at| (off(at), at)).min_by(|a, b| a.0.total_cmp(&b.0));
-        match nearest {
-            Some((off, at)) if off <= NEAR * extent => {
-                taken[at] = true;
-                partners.push(at);
-            }
-            _ => {
-                let [x, y, z] = place(node);
-                return refuse(format!(
-                    "\"{}\" is at ({x}, {y}, {z}), and no node of {} is there",
-                    builder.node_id(node),
-                    against.quoted()
-                ));
-            }
+        let partners = matched([nodes, others], self.skipped, distance);
+        match partners {
+            Ok(partners) => Some(partners),
+            Err(k) => self.refuse(&no_partner(self.builder, nodes, k, [self.at, self.against])),
         }
     }
-    Some(partners)
+
+    fn refuse<T>(&self, message: &str) -> Option<T> {
+        let help = if self.skipped.is_empty() {
+            "give both faces the same nodes; \"gap\": \"geometry\" lets partners be apart along the normal; where one face \
+             hangs over, make it `face` and name its nodes without a partner by number in `skip`, or write contacts of \
+             single nodes"
+        } else {
+            "name all nodes of `face` without a partner in `skip` (they count from 0), or write contacts of single nodes; \
+             \"gap\": \"geometry\" lets partners be apart along the normal"
+        };
+        self.against.problem(format!("the faces do not match: {message}"), help);
+        None
+    }
 }

@@ -1,6 +1,6 @@
 //! The two sides of a contact: which nodes meet which, along which normals, how far apart.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use super::builder::Builder;
 use super::reader::{Cursor, Fields};
@@ -9,6 +9,7 @@ use super::words::near;
 use crate::model::edge::Edge;
 use crate::model::mortar::{self, MortarError, MortarPair};
 use crate::model::pair::{Pair, Weights};
+use crate::model::structure::Dimension;
 use crate::model::vector::{dot, flat, way};
 
 /// The word for the ground in `against`.
@@ -68,6 +69,13 @@ impl Sides {
         let weights = nodes.iter().map(|&node| Some(Pair::of_nodes(node, None))).collect();
         Sides { nodes, weights, places: BTreeMap::new(), normals, gaps: None, shares: Vec::new() }
     }
+
+    /// The same without the pairs at these positions: nothing is asked of the nodes there, and the others keep theirs.
+    pub fn without(mut self, skipped: &HashSet<usize>) -> Sides {
+        let of_skipped = self.weights.iter_mut().enumerate().filter(|(index, _)| skipped.contains(index));
+        of_skipped.for_each(|(_, weights)| *weights = None);
+        self
+    }
 }
 
 /// Whether a `gap` is to be read from the geometry.
@@ -108,8 +116,35 @@ pub fn of_node<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
     })
 }
 
-/// The sides of an edge against another one or the ground.
-pub fn of_edge<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -> Option<Sides> {
+/// For each node the position of its partner: the nearest of those that are free, none for a node at a position in
+/// `skipped`. `distance(k, at)` is that of the node at k from the partner at `at`, `None` where they cannot be partners.
+/// Fails with the position of the first node without one.
+pub fn matched(
+    [nodes, others]: [&[usize]; 2],
+    skipped: &HashSet<usize>,
+    distance: impl Fn(usize, usize) -> Option<f64>,
+) -> Result<Vec<Option<usize>>, usize> {
+    let mut taken = vec![false; others.len()];
+    let mut partner = |(k, &node): (usize, &usize)| {
+        if skipped.contains(&k) {
+            return Ok(None);
+        }
+        let free = (0..others.len()).filter(|&at| !taken[at] && others[at] != node);
+        let possible = free.filter_map(|at| Some((distance(k, at)?, at)));
+        let (_, at) = possible.min_by(|a, b| a.0.total_cmp(&b.0)).ok_or(k)?;
+        taken[at] = true;
+        Ok(Some(at))
+    };
+    nodes.iter().enumerate().map(&mut partner).collect()
+}
+
+/// The sides of an edge against another one or the ground; nodes at the positions in `skipped` need no partner.
+pub fn of_edge<'d>(
+    builder: &Builder<'d>,
+    fields: &Fields<'d>,
+    at: Cursor<'d>,
+    skipped: &HashSet<usize>,
+) -> Option<Sides> {
     let edge = builder.edge(at);
     let normal = match fields.optional("normal") {
         Some(cursor) => Some(cursor.direction("normal")?),
@@ -149,8 +184,15 @@ pub fn of_edge<'d>(builder: &Builder<'d>, fields: &Fields<'d>, at: Cursor<'d>) -
         );
         return None;
     }
-    let two = TwoEdges { builder, at, against, edge: &edge, other: &other, apart: gap_of(fields) == Gap::Geometry };
-    match (two.partners(), method) {
+    let apart = gap_of(fields) == Gap::Geometry;
+    let two = TwoEdges { builder, at, against, edge: &edge, other: &other, apart, skipped };
+    // Where the method is free, edges that match but for what is skipped are left to the mortar: it counts the part of a
+    // side that lies between two nodes too.
+    let partners = match (two.partners(), method) {
+        (Err(_), Some(Method::Nodes)) if !skipped.is_empty() => two.partners_of_the_rest(),
+        (partners, _) => partners,
+    };
+    match (partners, method) {
         (Ok(partners), None | Some(Method::Nodes)) => Some(two.of_nodes(&partners, normal)),
         (Err(mismatch), Some(Method::Nodes)) => {
             let (message, help) = two.in_words(mismatch);
@@ -182,10 +224,31 @@ pub fn turned(normal: [f64; 3]) -> [f64; 3] {
     normal.map(|n| 0.0 - n)
 }
 
+/// That the node at a position of `nodes`, those of the side `at`, has no partner on the other side.
+pub fn no_partner(builder: &Builder<'_>, nodes: &[usize], k: usize, [at, against]: [Cursor<'_>; 2]) -> String {
+    let node = &builder.structure.nodes[nodes[k]];
+    let place = if builder.structure.dimension == Dimension::Space { &node.position[..] } else { &node.position[..2] };
+    let place: Vec<String> = place.iter().map(f64::to_string).collect();
+    format!(
+        "\"{}\" (number {k} of {}) is at ({}), and no node of {} is there",
+        builder.node_id(nodes[k]),
+        at.quoted(),
+        place.join(", "),
+        against.quoted()
+    )
+}
+
 /// Why two edges do not match node by node.
 enum Mismatch {
     Count,
-    Place { node: usize, partner: usize },
+    Place {
+        node: usize,
+        partner: usize,
+    },
+    /// Beside nodes that are skipped.
+    NoPartner {
+        number: usize,
+    },
 }
 
 struct TwoEdges<'a, 'd> {
@@ -196,6 +259,8 @@ struct TwoEdges<'a, 'd> {
     other: &'a Edge,
     /// Whether partners may be apart along the normal.
     apart: bool,
+    /// Positions of the nodes that need no partner.
+    skipped: &'a HashSet<usize>,
 }
 
 impl TwoEdges<'_, '_> {
@@ -205,26 +270,15 @@ impl TwoEdges<'_, '_> {
 
     /// For each node the position of its partner on the other edge, which may run the other way and, where both are
     /// closed, begin elsewhere; each node must be at the place of its partner.
-    fn partners(&self) -> Result<Vec<usize>, Mismatch> {
+    fn partners(&self) -> Result<Vec<Option<usize>>, Mismatch> {
         let (nodes, others) = (self.edge.distinct_nodes(), self.other.distinct_nodes());
         let count = others.len();
         if count != nodes.len() {
             return Err(Mismatch::Count);
         }
-        let length = |[dx, dy]: [f64; 2]| dx.hypot(dy);
-        let difference = |a: usize, b: usize| {
-            let (a, b) = (self.place(a), self.place(b));
-            [b[0] - a[0], b[1] - a[1]]
-        };
-        // Edges have at least two nodes.
-        let near = NEAR * length(difference(nodes[0], nodes[count - 1]));
         let normals = self.other.outward_normals(&self.builder.structure.nodes);
-        let off = |k: usize, at: usize| {
-            let ([dx, dy], n) = (difference(nodes[k], others[at]), normals[at]);
-            if self.apart { (dx * n[1] - dy * n[0]).abs() } else { length([dx, dy]) }
-        };
         let is_closed = |edge: &Edge| edge.distinct_nodes().len() < edge.nodes.len();
-        let distance = |at: usize| length(difference(nodes[0], others[at]));
+        let distance = |at: usize| self.distance(0, at);
         let nearest = || (0..count).min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
         let (first, last) = match is_closed(self.edge) && is_closed(self.other) {
             true => (nearest(), nearest()),
@@ -233,13 +287,45 @@ impl TwoEdges<'_, '_> {
         let forward: Vec<usize> = (0..count).map(|k| (first + k) % count).collect();
         let backward: Vec<usize> = (0..count).map(|k| (last + count - k) % count).collect();
         // A repeated node is the shared corner of two edges of one plate.
-        let wrong = |order: &[usize]| (0..count).find(|&k| nodes[k] == others[order[k]] || off(k, order[k]) > near);
+        let wrong = |order: &[usize]| {
+            (0..count).find(|&k| nodes[k] == others[order[k]] || !self.may_meet(k, order[k], &normals))
+        };
         let (Some(ahead), Some(back)) = (wrong(&forward), wrong(&backward)) else {
-            return Ok(if wrong(&forward).is_none() { forward } else { backward });
+            let order = if wrong(&forward).is_none() { forward } else { backward };
+            return Ok(order.into_iter().map(Some).collect());
         };
         // Of the two ways the one that goes further is reported.
         let (k, order) = if back > ahead { (back, backward) } else { (ahead, forward) };
         Err(Mismatch::Place { node: nodes[k], partner: others[order[k]] })
+    }
+
+    /// The partners of the nodes that are not skipped, where the others have none.
+    fn partners_of_the_rest(&self) -> Result<Vec<Option<usize>>, Mismatch> {
+        let sides = [self.edge, self.other].map(Edge::distinct_nodes);
+        let normals = self.other.outward_normals(&self.builder.structure.nodes);
+        let distance = |k: usize, at: usize| self.may_meet(k, at, &normals).then(|| self.distance(k, at));
+        matched(sides, self.skipped, distance).map_err(|number| Mismatch::NoPartner { number })
+    }
+
+    fn way(&self, a: usize, b: usize) -> [f64; 2] {
+        let (a, b) = (self.place(a), self.place(b));
+        [b[0] - a[0], b[1] - a[1]]
+    }
+
+    /// From a node to one of the other edge, by their positions.
+    fn distance(&self, k: usize, at: usize) -> f64 {
+        let [dx, dy] = self.way(self.edge.distinct_nodes()[k], self.other.distinct_nodes()[at]);
+        dx.hypot(dy)
+    }
+
+    /// Whether a node is at the place of one of the other edge, or `apart` along its normal.
+    fn may_meet(&self, k: usize, at: usize, normals: &[[f64; 3]]) -> bool {
+        let nodes = self.edge.distinct_nodes();
+        let ([dx, dy], n) = (self.way(nodes[k], self.other.distinct_nodes()[at]), normals[at]);
+        // Edges have at least two nodes.
+        let [ex, ey] = self.way(nodes[0], nodes[nodes.len() - 1]);
+        let off = if self.apart { (dx * n[1] - dy * n[0]).abs() } else { self.distance(k, at) };
+        off <= NEAR * ex.hypot(ey)
     }
 
     fn in_words(&self, mismatch: Mismatch) -> (String, &'static str) {
@@ -262,15 +348,19 @@ impl TwoEdges<'_, '_> {
                     "every node must be at the place of its partner; \"gap\": \"geometry\" lets them be apart along the normal, \"method\": \"mortar\" beside each other",
                 )
             }
+            Mismatch::NoPartner { number } => (
+                no_partner(self.builder, self.edge.distinct_nodes(), number, [self.at, self.against]),
+                "name all nodes without a partner in `skip`, or give \"method\": \"mortar\"",
+            ),
         }
     }
 
     /// `partners`: positions on the other edge.
-    fn of_nodes(&self, partners: &[usize], normal: Option<[f64; 3]>) -> Sides {
+    fn of_nodes(&self, partners: &[Option<usize>], normal: Option<[f64; 3]>) -> Sides {
         let (nodes, others) = (self.edge.distinct_nodes(), self.other.distinct_nodes());
         let own = self.other.outward_normals(&self.builder.structure.nodes);
-        let normals = partners.iter().map(|&at| normal.unwrap_or(own[at])).collect();
-        let weights = nodes.iter().zip(partners).map(|(&node, &at)| Some(Pair::of_nodes(node, Some(others[at]))));
+        let normals = partners.iter().map(|&at| normal.unwrap_or(at.map_or([0.0; 3], |at| own[at]))).collect();
+        let weights = nodes.iter().zip(partners).map(|(&node, at)| Some(Pair::of_nodes(node, Some(others[(*at)?]))));
         Sides::new(self.builder, nodes.to_vec(), weights.collect(), normals)
     }
 
@@ -294,7 +384,9 @@ impl TwoEdges<'_, '_> {
                 let room = NEAR * self.edge.length(nodes)
                     + mortar::chord_error(self.edge, nodes)
                     + mortar::chord_error(self.other, nodes);
-                let far = sides.gaps.iter().flatten().zip(&sides.nodes).find(|(gap, _)| gap.abs() > room);
+                let of_nodes = sides.gaps.iter().flatten().zip(&sides.nodes).enumerate();
+                let kept = of_nodes.filter(|(k, _)| !self.skipped.contains(k)).map(|(_, of_node)| of_node);
+                let far = kept.into_iter().find(|(gap, _)| gap.abs() > room);
                 match far.filter(|_| must_touch) {
                     None => return Some(sides),
                     Some((gap, &node)) => (
@@ -312,7 +404,8 @@ impl TwoEdges<'_, '_> {
             ),
             Err(MortarError::Shared(node)) => (
                 format!("the edges {at} and {against} have the node \"{}\" in common", id(node)),
-                "each body needs nodes of its own along the joint",
+                "each body needs nodes of its own along the joint; a node where the joint ends inside the body is left out \
+                 by `skip` beside \"method\": \"nodes\"",
             ),
         };
         self.against.problem(message, help);
