@@ -58,8 +58,7 @@ pub fn table(history: &History, units: &Units) -> Table {
         Column::words("balance").droppable(5),
     ]);
     let mut table = Table::new(columns);
-    let ends = history.stages.iter().filter_map(|stage| stage.moments.last());
-    let slips = largest(ends.flat_map(|end| end.pairs.iter().map(|pair| pair.z_t)));
+    let slips = largest(history.stages.iter().map(|stage| stage.max_slip()));
     // Rounding beside the work of the loads is not dissipation.
     let energies = largest(history.stages.iter().flat_map(|stage| {
         let energy = stage.energy.unwrap_or_default();
@@ -71,12 +70,11 @@ pub fn table(history: &History, units: &Units) -> Table {
         };
         let mut cells = vec![Cell::from((index + 1).to_string())];
         cells.extend(end.factors.iter().map(|factor| Cell::number(*factor)));
-        let changes = stage.moments.iter().filter(|moment| !moment.changes.is_empty()).count();
         cells.extend([
             Cell::from(stage.pivots.to_string()),
-            Cell::from(changes.to_string()),
-            Cell::number(largest(end.pairs.iter().map(|pair| pair.z_t))),
-            Cell::number(denoised(largest(stage.slip.iter().copied()), slips)),
+            Cell::from(stage.change_count().to_string()),
+            Cell::number(stage.max_slip()),
+            Cell::number(denoised(stage.max_slip_increment(), slips)),
             Cell::number(denoised(stage.dissipated, energies)),
             Cell::from(stage.energy.map_or(String::new(), |energy| residual(energy.residual))),
         ]);

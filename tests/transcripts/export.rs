@@ -107,12 +107,21 @@ fn every_table_is_written_as_csv_and_json() {
         ("parameters", "", "name,value,file,formula,min,max,step,unit,about", 2),
         ("combinations", "", "name,factors_weight,factors_push,outcome,ray,pivots,probes_lift, left", 2),
         ("envelope", "", "quantity,unit,least_value,least_combination,largest_value,largest_combination", 1),
-        ("stages", "", "stage,pivots,factors_weight,factors_push,slip_increment,dissipated,work,stored,balance", 2),
+        (
+            "stages",
+            "",
+            "stage,pivots,factors_weight,factors_push,max_slip,max_slip_increment,slip_increment_base[0],\
+             slip_increment_base[1],slip_increment_base[2],dissipated,work,stored,balance,changes",
+            2,
+        ),
         ("sensitivity", "f", "parameter,value,pair,x_n,x_t,z_n,z_t", 6),
     ] {
         let (names, rows) = header(what, of);
         assert_eq!((names.join(","), rows), (columns.to_owned(), count), "{what}");
     }
+    // one number in a cell
+    let rows = csv(&fs::read_to_string(folder.path().join("stages.csv")).expect("a file"));
+    assert!(rows[1..].iter().flatten().all(|cell| cell.parse::<f64>().is_ok()), "{rows:?}");
     for what in ["pivots", "answers", "compare", "path"] {
         header(what, "");
     }

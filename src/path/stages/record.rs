@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::integrals::Integrals;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{Answer, InSpace, OutcomeKind, PairState, Ray, State, Verdict};
+use crate::answer::rounding::largest;
 use crate::path::change::Change;
 use crate::path::start::PathError;
 use crate::text::number::short;
@@ -69,6 +70,21 @@ impl StageResult {
     /// Factors of the load cases at its end, without a unit.
     pub fn factors(&self) -> &[f64] {
         self.moments.last().map_or(&[], |end| &end.factors)
+    }
+
+    /// The largest slip at its end.
+    pub fn max_slip(&self) -> f64 {
+        largest(self.moments.last().into_iter().flat_map(|end| &end.pairs).map(|pair| pair.z_t))
+    }
+
+    /// The largest slip in this stage.
+    pub fn max_slip_increment(&self) -> f64 {
+        largest(self.slip.iter().copied())
+    }
+
+    /// At how many of its moments pairs change their motion.
+    pub fn change_count(&self) -> usize {
+        self.moments.iter().filter(|moment| !moment.changes.is_empty()).count()
     }
 
     /// What the pairs do between its moments, in order; stretches of no length are left out.

@@ -81,6 +81,8 @@ pub(in crate::session) fn history_json(history: &History) -> Value {
         let mut of_stage = json!({
             "pivots": stage.pivots,
             "factors": stage.moments.last().map(|end| &end.factors),
+            "max_slip": stage.max_slip(),
+            "max_slip_increment": stage.max_slip_increment(),
             "slip_increment": stage.slip,
             "dissipated": stage.dissipated,
             "work": stage.energy.map(|energy| energy.work),

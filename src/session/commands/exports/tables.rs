@@ -207,7 +207,10 @@ impl Session {
                 Table::of(&holds.chain(list("places")).collect::<Vec<_>>())
             }
             Exported::Check | Exported::Critical | Exported::Find => Table::of(std::slice::from_ref(value)),
-            Exported::Stages => Table::of(&without(list("stages"), &["changes", "pairs"])),
+            Exported::Stages => {
+                let stages = list("stages").into_iter().map(stage_row).collect();
+                Table::of(&without(stages, &["pairs"]))
+            }
             Exported::Answers => {
                 let numbered = list("answers").into_iter().enumerate().map(
                     |(index, answer)| json!({"answer": index + 1, "exact": answer["exact"], "pairs": answer["pairs"]}),
@@ -272,6 +275,15 @@ impl Session {
         }
         Ok(report)
     }
+}
+
+/// A stage with what its table shows: how often pairs change, and the slip of each pair in a column of its own.
+fn stage_row(mut stage: Value) -> Value {
+    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    stage["changes"] = list(&stage["changes"]).len().into();
+    let ids = list(&stage["pairs"]).into_iter().filter_map(|pair| Some(pair["id"].as_str()?.to_owned()));
+    stage["slip_increment"] = ids.zip(list(&stage["slip_increment"])).collect::<Map<_, _>>().into();
+    stage
 }
 
 /// A dictionary: what is basic, its value, and its rate in each variable that is not.
