@@ -29,6 +29,14 @@ impl RayClass {
             RayClass::NoEquilibrium => "no-equilibrium",
         }
     }
+
+    /// Whether it says something about the structure, not about the run alone.
+    pub fn is_of_structure(self) -> bool {
+        match self {
+            RayClass::Mechanism | RayClass::NoEquilibrium => true,
+            RayClass::Artefact | RayClass::Fault => false,
+        }
+    }
 }
 
 /// What has been proved of a mechanism or no equilibrium.

@@ -29,7 +29,7 @@ pub mod worker;
 use std::sync::Arc;
 
 pub use crate::answer::record::Answer;
-use crate::answer::record::{OutcomeKind, RayClass};
+use crate::answer::record::OutcomeKind;
 pub use crate::answer::{diagram, record as results};
 pub use crate::explain::remedy::Remedies;
 use crate::export::table::Table;
@@ -249,8 +249,8 @@ pub fn exit_status(answer: &Answer) -> u8 {
     match answer.outcome {
         OutcomeKind::Trivial | OutcomeKind::Normal => 0,
         OutcomeKind::Ray => match answer.ray.as_ref().map(|ray| ray.class) {
-            Some(RayClass::Mechanism | RayClass::NoEquilibrium) => 3,
-            Some(RayClass::Artefact | RayClass::Fault) | None => 4,
+            Some(class) if class.is_of_structure() => 3,
+            Some(_) | None => 4,
         },
         OutcomeKind::PivotLimit | OutcomeKind::Breakdown | OutcomeKind::CheckFailed => 4,
     }

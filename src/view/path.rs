@@ -186,7 +186,7 @@ pub fn write_limit(out: &mut dyn Write, limit: &Limit, unit: Option<&str>, style
     };
     let text = format!("limit load: {name} = {}{safety}", with_unit(&exact(factor), unit));
     style.paragraph(out, Role::Title, &text)?;
-    if let Some(collapse) = &limit.collapse {
+    if let Some(collapse) = limit.collapse() {
         let class = collapse.class.word();
         let verdict = collapse.verdict.map_or(String::new(), |verdict| format!(", {}", verdict.word()));
         style.paragraph(out, Role::Warning, &format!("collapse ({class}{verdict}): {}", collapse.mode))?;

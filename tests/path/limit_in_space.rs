@@ -43,7 +43,7 @@ fn a_push_at_any_angle_ends_at_its_friction() {
         let factor = limit.factor.unwrap_or_else(|| panic!("{angle} {facets}: {}", limit.end_sentence()));
         assert!((factor - 0.6).abs() <= 1e-7, "{angle} {facets}: {factor}");
         assert!(limit.confirmed && (limit.safety.expect("safety") - 6.0).abs() < 1e-6);
-        let collapse = limit.collapse.as_ref().expect("a collapse");
+        let collapse = limit.collapse().expect("a collapse");
         assert_eq!(collapse.verdict, Some(Verdict::Certified));
         // Feet that slip do not open, though the motion of the proof parts them.
         let towards = if angle > 180.0 { angle - 360.0 } else { angle };

@@ -76,7 +76,7 @@ fn the_beam_slips_support_by_support_and_then_as_a_whole() {
         let limit = Case::new("beam", &[("F2", start)]).limit("F2");
         close(limit.factor.expect("a limit"), 6.0 * r, 1e-12);
         assert!(limit.confirmed);
-        let collapse = limit.collapse.expect("a mode");
+        let collapse = limit.collapse().expect("a mode");
         assert!(collapse.direction.pairs().iter().all(|d| (d.z_t.scalar() - 1.0).abs() < 1e-9 && d.z_n == 0.0));
     }
     // Beyond the limit there is no answer: the path starts from 0 and the safety is below 1.
@@ -118,7 +118,7 @@ fn plates_slide_and_overturn_at_their_limits() {
         let limit = case.limit("push");
         close(limit.factor.expect("a limit"), expected, 1e-9);
         assert!(limit.confirmed, "f = {f}");
-        let collapse = limit.collapse.expect("a mode");
+        let collapse = limit.collapse().expect("a mode");
         assert_eq!(collapse.class, stickslip::answer::record::RayClass::Mechanism);
         let opens = collapse.direction.pairs().iter().any(|d| d.z_n > 1e-9);
         assert_eq!(opens, expected == 400.0, "{}", collapse.mode);

@@ -61,7 +61,7 @@ fn arch(blocks: usize, thickness: f64, friction: f64) -> Case {
 fn limit_of(case: &Case) -> (f64, stickslip::answer::record::Ray, bool) {
     let values = case.scenario.parameter_values();
     let found = limit(case.prepared.case(&case.scenario, &values), None, "quake").expect("a path");
-    (found.factor.expect("a limit"), found.collapse.expect("a collapse"), found.confirmed)
+    (found.factor.expect("a limit"), found.collapse().cloned().expect("a collapse"), found.confirmed)
 }
 
 #[test]

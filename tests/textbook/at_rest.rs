@@ -59,7 +59,7 @@ fn sum(answer: &Answer, read: impl Fn(&stickslip::answer::record::PairState) -> 
 fn is_limit(found: &Limit, expected: f64) {
     close("limit", found.factor.expect("a limit"), expected, 1e-7);
     assert!(found.confirmed, "{found:?}");
-    let collapse = found.collapse.as_ref().expect("a collapse");
+    let collapse = found.collapse().expect("a collapse");
     assert_eq!(collapse.verdict, Some(Verdict::Certified), "{collapse:?}");
     assert!(found.beyond_sentence().is_some_and(|said| said.contains("proved")), "{found:?}");
 }

@@ -57,7 +57,8 @@ fn look_beside(limit: &mut Limit, path: &LoadPath, case: Case<'_>, negative: boo
     }
     let problem = ContactProblem { system: Arc::clone(system), factors: factors.clone(), ..path.problem_at(*value) };
     let mut collapse = ray::look(&problem, path.contact(), direction, 0.0);
-    if let Some(found) = &above.ray {
+    // A ray that is the run's own says nothing against the motion in which the path ends.
+    if let Some(found) = above.ray.as_ref().filter(|found| found.class.is_of_structure()) {
         collapse.class = found.class;
     }
     ray::certify_ray(&mut collapse, &problem, prepared.built());

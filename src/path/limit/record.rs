@@ -1,6 +1,6 @@
 //! What is known of the limit of a load: factor, safety, how the structure collapses, and what has been proved of it.
 
-use crate::answer::record::{Ray, Verdict};
+use crate::answer::record::{Ray, RayClass, Verdict};
 use crate::path::beside::{BESIDE, nine_digits, search, size};
 use crate::path::end::PathEnd;
 use crate::path::load::LoadPath;
@@ -21,8 +21,8 @@ pub struct Limit {
     pub factor: Option<f64>,
     /// limit / present, where the present is not 0.
     pub safety: Option<f64>,
-    /// The collapse: mode, direction, class and verdict.
-    pub collapse: Option<Ray>,
+    /// How the run beyond the limit ended: see [`Limit::collapse`].
+    pub(super) collapse: Option<Ray>,
     /// Whether `solve`, with all its retries, finds an answer just below the limit and none just above. A limit of 0 has
     /// no such places.
     pub confirmed: bool,
@@ -40,6 +40,11 @@ pub struct Limit {
 }
 
 impl Limit {
+    /// The collapse: mode, direction, class and verdict; `None` for a ray that is the run's own and nothing of the structure.
+    pub fn collapse(&self) -> Option<&Ray> {
+        self.collapse.as_ref().filter(|ray| is_of_structure(ray))
+    }
+
     /// How the path ended, in a sentence.
     pub fn end_sentence(&self) -> String {
         let name = &self.name;
@@ -56,7 +61,8 @@ impl Limit {
                         .proof
                         .map_or(String::new(), |proof| format!(" (and prove that there is none at {name} = {proof})"));
                     format!(
-                        "runs of their own find an answer at {name} = {answer} and {proof} at {name} = {none}{farther}"
+                        "runs of their own find an answer at {name} = {answer} and {proof} at {name} = {none}{farther}{}",
+                        self.no_collapse_words()
                     )
                 }
             };
@@ -85,7 +91,7 @@ impl Limit {
     /// A motion on which the loads do more work than contact can take just beyond the limit, and do not where there still is
     /// an answer, is driven harder by every load beyond. Anything else is known of one load only.
     pub fn beyond_sentence(&self) -> Option<String> {
-        let collapse = self.collapse.as_ref()?;
+        let collapse = self.collapse()?;
         if collapse.verdict == Some(Verdict::Certified) && !collapse.misfit && !collapse.of_this_load {
             return Some("no load beyond it can be carried: proved".to_owned());
         }
@@ -96,13 +102,34 @@ impl Limit {
         Some(format!("whether loads beyond it can be carried is not proved: {search} looks"))
     }
 
-    /// Takes a collapse at the limit, with what it means in a sentence.
+    /// Takes a collapse at the limit, with what it means in a sentence. Where runs of their own alone tell of a limit, one that
+    /// ended in a ray of its own rules leaves none: answers end there only as far as they were found.
     pub(super) fn put_collapse(&mut self, collapse: Ray) {
+        if !is_of_structure(&collapse) {
+            if self.path.is_none() && self.bracket.is_some() {
+                (self.factor, self.safety) = (None, None);
+            }
+            self.collapse = Some(collapse);
+            return;
+        }
         let moving = format!("At this load the structure is on the point of moving: {}", collapse.mode);
         self.collapse = Some(collapse);
         let beyond = self.beyond_sentence().map_or(String::new(), |beyond| format!("; {beyond}"));
         if let Some(collapse) = &mut self.collapse {
             collapse.explanation = format!("{moving}{beyond}.");
+        }
+    }
+
+    /// What is to be said of a run beyond the answers that ended in a ray of its own.
+    fn no_collapse_words(&self) -> &'static str {
+        match self.collapse.as_ref().filter(|ray| !is_of_structure(ray)).map(|ray| ray.class) {
+            Some(RayClass::Artefact) => {
+                ", where the pivots end in an artefact: that is no collapse, and an answer may exist"
+            }
+            Some(RayClass::Fault) => {
+                ", where the run failed: the structure stands without its contacts, so an answer exists"
+            }
+            _ => "",
         }
     }
 
@@ -139,6 +166,11 @@ impl Limit {
     }
 }
 
+/// Whether a ray tells how the structure moves, or is proved to leave no answer.
+fn is_of_structure(ray: &Ray) -> bool {
+    ray.class.is_of_structure() || ray.verdict.is_some_and(Verdict::is_proof)
+}
+
 impl Limit {
     /// In a few words: why there is no limit, or that no run of its own confirms it; empty for a confirmed one.
     pub fn brief(&self) -> String {
@@ -152,6 +184,73 @@ impl Limit {
             (None, None, None, Some(PathEnd::Turning)) => format!("none found: the path turns back at {at}"),
             (None, None, None, Some(_)) => format!("none found: the path ends at {at}"),
             (None, None, None, None) => format!("none found up to {at}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::answer::record::Direction;
+
+    /// What runs of their own leave: answers up to 2, none at 2.0001, where a run ended in a ray of this class.
+    fn limit(class: RayClass, verdict: Option<Verdict>) -> Limit {
+        let mut limit = Limit {
+            name: "F".to_owned(),
+            path: None,
+            last: 2.0,
+            present: 1.0,
+            factor: Some(2.0),
+            safety: Some(2.0),
+            collapse: None,
+            confirmed: false,
+            beyond: None,
+            bracket: Some([2.0, 2.0001]),
+            proof: None,
+            polygon_only: false,
+            lost: false,
+        };
+        limit.put_collapse(Ray {
+            class,
+            verdict,
+            p: 0.0,
+            driver: String::new(),
+            direction: Direction::Pairs(Vec::new()),
+            mode: "c slips".to_owned(),
+            explanation: String::new(),
+            misfit: false,
+            of_this_load: false,
+        });
+        limit
+    }
+
+    #[test]
+    fn a_ray_of_the_run_is_no_collapse_and_no_limit() {
+        for (class, words) in
+            [(RayClass::Artefact, "an artefact: that is no collapse"), (RayClass::Fault, "the run failed")]
+        {
+            let found = limit(class, None);
+            assert_eq!((found.factor, found.safety, found.collapse()), (None, None, None));
+            let sentence = found.end_sentence();
+            assert!(
+                sentence.starts_with("runs of their own find an answer at F = 2 and find none at F = 2.0001, where")
+            );
+            assert!(sentence.contains(words), "{sentence}");
+            assert_eq!(found.brief(), "between 2 and 2.0001");
+            assert!(!found.is_bracketed());
+        }
+    }
+
+    #[test]
+    fn a_motion_or_a_proof_is_one() {
+        for (class, verdict) in [
+            (RayClass::Mechanism, Some(Verdict::Undecided)),
+            (RayClass::NoEquilibrium, None),
+            (RayClass::Artefact, Some(Verdict::Proved)),
+        ] {
+            let found = limit(class, verdict);
+            assert_eq!((found.factor, found.safety), (Some(2.0), Some(2.0)));
+            assert_eq!(found.collapse().map(|ray| ray.class), Some(class));
         }
     }
 }

@@ -131,7 +131,7 @@ impl Session {
             limit: found.factor,
             present: found.present,
             safety: found.safety,
-            collapse: found.collapse.as_ref(),
+            collapse: found.collapse(),
             confirmed: found.confirmed,
             answer_beyond: found.beyond,
             end: found.end_sentence(),

@@ -18,7 +18,7 @@ use super::exact::final_scheme;
 use super::plain_answers::{RayProof, prove_plain_ray};
 use super::prepared::{Geometry, Prepared};
 use super::state::{RunData, Solved};
-use crate::answer::record::{OutcomeKind, RayClass};
+use crate::answer::record::OutcomeKind;
 use crate::contact::law::PairLaw;
 use crate::contact::polygon::Polygon;
 use crate::contact::schemes::scheme::PairScheme;
@@ -125,7 +125,7 @@ impl Prepared {
         let Some(ray) = ray else {
             return refused("prove: the run was given up, which says nothing about answers");
         };
-        if matches!(ray.class, RayClass::Artefact | RayClass::Fault) {
+        if !ray.class.is_of_structure() {
             return refused("prove: this ray is one of the rules, not of the problem: `help ray` says what to try");
         }
         // A motion needs no form, and with many motions in the kernel the forms are long.
