@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::engines::kind;
 use super::prepared::{Geometry, Prepared};
-use crate::answer::check::check_contact;
+use crate::answer::check::{TOLERANCE, check_contact};
 use crate::answer::pairs::{JointState, Shares};
 use crate::answer::record::{
     Answer, Attempt, AttemptRules, Check, EndForces, MemberForces, NodeDisplacement, OutcomeKind, PairState, Reaction,
@@ -301,7 +301,7 @@ pub(super) fn fail_check(answer: &mut Answer) {
             "; its forces are differences of so much larger ones that rounding hides {hidden:.1e} of the loads: a motion that \
              nothing resists, or stiffnesses too far apart (parts far stiffer than what holds them, a Poisson's ratio next to 0.5)"
         ),
-        _ => String::new(),
+        _ => unbalanced_words(&answer.check),
     };
     answer.failure = Some(format!(
         "the state found does not pass its check from R, RF and f (min w {:.1e}, min z {:.1e}, complementarity {:.1e}{}){hidden}",
@@ -312,6 +312,19 @@ pub(super) fn fail_check(answer: &mut Answer) {
     ));
     if let Some(last) = answer.attempts.last_mut() {
         last.outcome = OutcomeKind::CheckFailed;
+    }
+}
+
+/// What is said where the joints obey their laws, and the nodes are not balanced.
+fn unbalanced_words(check: &Check) -> String {
+    let joints = Check { equilibrium: None, ..*check };
+    match check.equilibrium {
+        Some(left) if joints.is_within(LAW_ROUNDING) && !joints.joints_only => format!(
+            "; the joints obey their laws, but the displacements balance the nodes only to {left:.1e} of the forces there \
+             ({TOLERANCE:.0e} is asked for): rounding of large displacements that hardly anything resists, or of stiffnesses \
+             too far apart; a further support or spring there, or stiffnesses nearer to each other, may help"
+        ),
+        _ => String::new(),
     }
 }
 
@@ -359,6 +372,7 @@ pub(super) fn empty_answer(run: &Run, force_unit: f64, rules: AttemptRules, size
 
 #[cfg(test)]
 mod tests {
+    use super::{Check, unbalanced_words};
     use crate::answer::pairs::joint_state;
     use crate::model::load::load_text;
     use crate::solve::prepare;
@@ -379,5 +393,16 @@ mod tests {
         let RunData::Contact { contact, problem, last, .. } = &solved.run else { panic!("no contact") };
         prepared.complete(&mut solved.answer, problem, &joint_state(problem, contact, last));
         assert_eq!(solved.answer.notes, said);
+    }
+
+    /// Only where the joints pass by themselves it is the balance alone that fails.
+    #[test]
+    fn a_balance_that_fails_alone_is_said() {
+        let unbalanced = Check { equilibrium: Some(2e-9), ..Check::default() };
+        let words = unbalanced_words(&unbalanced);
+        assert!(words.contains("only to 2.0e-9 of the forces there (1e-9 is asked for)"), "{words}");
+        for other in [Check { equilibrium: None, ..unbalanced }, Check { min_w: -1e-3, ..unbalanced }] {
+            assert_eq!(unbalanced_words(&other), "");
+        }
     }
 }

@@ -263,7 +263,11 @@ pub fn write(
     }
     if answer.marginal {
         let p = weight(answer.p, answer, units);
-        rows.push(("marginal", format!("exactly on a limit: p stopped at {p} instead of 0")));
+        let stopped = match answer.p {
+            0.0 => "the pivots bring p down to 0, but none takes it out".to_owned(),
+            _ => format!("p stopped at {p} instead of 0"),
+        };
+        rows.push(("marginal", format!("exactly on a limit: {stopped}")));
     }
     rows.push(("size", sizes(answer, scenario)));
     rows.push((
