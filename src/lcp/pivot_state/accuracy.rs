@@ -62,7 +62,7 @@ impl PivotState {
     /// refinement with residuals in doubled precision squares the error of the dictionary, which is built afresh where
     /// it exceeds [`DRIFT`]. `None` where the result does not agree with the data to rounding.
     pub(crate) fn sharp_point(&self) -> Option<Point> {
-        let held = Numbers::doubled(self, &self.dictionary.value, None, 1.0).corrected();
+        let held = Numbers::doubled(self, &self.dictionary.value).corrected();
         let error = Numbers::new(self, &held, None, 1.0).error(self.size_of(&held));
         (error <= ROUNDING).then(|| self.point_of(&held))
     }
@@ -73,20 +73,15 @@ impl PivotState {
     }
 
     /// Makes the column fetched last, on whose small rate in the `tied` rows a decision depends, as true to the data as
-    /// it can be made: by refinement, in doubled precision where f64 does not tell, or, where the dictionary is too far off
-    /// for that, by building it afresh. `false` (and nothing changed): the equations of the scheme are singular.
+    /// it can be made: by refinement, or, where the dictionary is too far off for that, by building it afresh. `false`
+    /// (and nothing changed): the equations of the scheme are singular.
     pub(crate) fn refine_if_doubtful(&mut self, c: usize, tied: &[Candidate]) -> bool {
         let surest = tied.iter().map(|tied| self.relative_fall(c, tied)).fold(0.0, f64::max);
-        // That nothing falls at all is said of the column as exact as the data give it.
-        let bearable = if tied.is_empty() { ROUNDING } else { REFINED * surest };
+        let bearable = REFINED * surest;
         let rates = self.rates(c);
-        if !tied.is_empty() && rates.error(self.rate_total(c)) <= bearable {
+        if rates.error(self.rate_total(c)) <= bearable {
             let refined = rates.corrected();
             self.set_column(refined);
-            return true;
-        }
-        if let Some(settled) = self.settled_rates(c, bearable) {
-            self.set_column(settled);
             return true;
         }
         if !self.refresh() {
@@ -95,19 +90,6 @@ impl PivotState {
         self.fetch(c);
         self.refine_column(c);
         true
-    }
-
-    /// The rates along column c, which was fetched last, refined in doubled precision; `None` where a second round still
-    /// moves one by more than `bearable` of its natural size. What it moves is the error that the first one left.
-    fn settled_rates(&self, c: usize, bearable: f64) -> Option<Vec<f64>> {
-        let refined = |rates: &[f64]| Numbers::doubled(self, rates, Some(c), 0.0).corrected();
-        let first = refined(&self.column);
-        let second = refined(&first);
-        let (total, p_rate) = (self.rate_total(c), self.dictionary.rate(Slot::P, c, &second));
-        let settles = |((&local, one), other): ((&Slot, &f64), &f64)| {
-            (one - other).abs() <= bearable * self.rate_size(local, total, p_rate)
-        };
-        self.dictionary.row.iter().zip(&first).zip(&second).all(settles).then_some(second)
     }
 
     /// Refines the column fetched last.
@@ -181,9 +163,9 @@ impl<'a> Numbers<'a> {
 }
 
 impl<'a> Numbers<'a, Doubled> {
-    /// As [`Numbers::new`].
-    fn doubled(stand: &'a PivotState, held: &'a [f64], entering: Option<usize>, shift: f64) -> Numbers<'a, Doubled> {
-        let mut numbers = Numbers { stand, held, entering, shift, p: 0.0, w: Vec::new() };
+    /// Values.
+    fn doubled(stand: &'a PivotState, held: &'a [f64]) -> Numbers<'a, Doubled> {
+        let mut numbers = Numbers { stand, held, entering: None, shift: 1.0, p: 0.0, w: Vec::new() };
         let z = numbers.take_unknowns();
         let lcp = &stand.lcp;
         let (mut high, mut low) = (vec![0.0; lcp.size()], vec![0.0; lcp.size()]);
@@ -191,7 +173,7 @@ impl<'a> Numbers<'a, Doubled> {
         let own = |i: usize| Doubled::sum(high[i], low[i]);
         let w = |i: usize| {
             let coupled = lcp.coupling(i).map_or_else(Doubled::default, |(n, f)| Doubled::from(f) * own(n));
-            own(i) + coupled + Doubled::product(shift, lcp.q[i]) + Doubled::product(lcp.covering[i], numbers.p)
+            own(i) + coupled + Doubled::from(lcp.q[i]) + Doubled::product(lcp.covering[i], numbers.p)
         };
         numbers.w = (0..lcp.size()).map(w).collect();
         numbers
