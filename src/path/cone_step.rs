@@ -119,7 +119,7 @@ impl<'a> Stepper<'a> {
             });
             if facets >= FINEST {
                 let Some(force) = force else { return Ok(Err(ray)) };
-                return Ok(self.beyond_a_jump(&whole, (from, force))?.ok_or(ray));
+                return Ok(self.beyond_a_jump((&whole, exact.as_ref()), (from, force))?.ok_or(ray));
             }
             facets *= 2;
         }
@@ -129,18 +129,18 @@ impl<'a> Stepper<'a> {
     /// against what moves at the time, not against all of the way.
     fn beyond_a_jump(
         &self,
-        problem: &ContactProblem,
+        (problem, exact): (&ContactProblem, Option<&ContactProblem>),
         (from, force): (&DVector<f64>, &DVector<f64>),
     ) -> Result<Option<Step>, PathError> {
         let start = (from.clone(), force.clone());
-        if let Some(exact) = exactly_behind(problem, from) {
+        if let Some(exact) = exact {
             let (problem, shift) = (behind_slips(problem.clone(), from), slips_of(problem, from));
-            let pairs = cone_pairs(&exact);
+            let pairs = cone_pairs(exact);
             let at_rest = |(z, force): &Place| {
-                let found = self.mixed((&problem, &MixedProblem::new(&exact, &pairs)), &(z - &shift), force)?;
+                let found = self.mixed((&problem, &MixedProblem::new(exact, &pairs)), &(z - &shift), force)?;
                 Ok(found.map(|found| Step::of_mixed(&problem, from, found)))
             };
-            return resisted(&|_| (Cow::Borrowed(&exact), shift.clone()), start, self.watch, &at_rest);
+            return resisted(&|_| (Cow::Borrowed(exact), shift.clone()), start, self.watch, &at_rest);
         }
         let counted = |z: &DVector<f64>| (Cow::Owned(behind_slips(problem.clone(), z)), slips_of(problem, z));
         let at_rest = |(z, _): &Place| self.near(problem.clone(), z, z);

@@ -30,6 +30,9 @@ impl ConeProblem<'_> {
         moves: impl Fn(usize) -> bool,
     ) -> Option<DMatrix<f64>> {
         let kernel = self.kernel;
+        if kernel.ncols() == 0 {
+            return None;
+        }
         let mut held = vec![true; kernel.nrows()];
         for (i, pair) in self.pairs.iter().enumerate() {
             let is_pressed = !is_open(i) && !forces[i].is_zero();
@@ -58,9 +61,6 @@ impl ConeProblem<'_> {
         (z, forces): (&DVector<f64>, &[Sum]),
         before: &DVector<f64>,
     ) -> Option<DVector<f64>> {
-        if self.kernel.ncols() == 0 {
-            return None;
-        }
         let motions = self.free_motions(forces, |i| z[i] > 0.0, |_| true)?;
         let moved = &motions * motions.tr_mul(&(z - before));
         let least = z - moved;

@@ -215,6 +215,7 @@ impl Equations {
             }
         }
         let mut matrix = DMatrix::from_fn(n, n, |i, j| rows[(j, i)] / (root[moving[i]] * root[moving[j]]));
+        // Without a kernel nothing is free, and no forces are summed to see that.
         if problem.kernel.ncols() > 0 {
             let (forces, is_open) = (problem.forces(&problem.bending(z)), |i: usize| !map.branches[i].is_closed);
             if let Some(free) = problem.free_motions(&forces, is_open, |joint| place[joint] < n) {

@@ -124,9 +124,7 @@ impl Rows {
                 }
             }
         }
-        if problem.kernel.ncols() > 0
-            && let Some(free) = problem.free_motions(&forces, |i| z[i] > 0.0, |joint| place[joint] < n)
-        {
+        if let Some(free) = problem.free_motions(&forces, |i| z[i] > 0.0, |joint| place[joint] < n) {
             hold(&mut matrix, &free.select_rows(&self.joints));
         }
         let right = DVector::from_fn(n, |at, _| -self.residual[at]);

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::builder::Builder;
 use super::reader::{Cursor, Fields};
-use super::sides::{GROUND, Gap, NEAR, Sides, gap_of, is_misspelt_ground, matched, no_partner, turned};
+use super::sides::{GROUND, Gap, NEAR, Sides, gap_of, given_normal, is_misspelt_ground, matched, no_partner, turned};
 use crate::model::face::Face;
 use crate::model::pair::Pair;
 use crate::model::vector::{dot, length, way};
@@ -17,10 +17,7 @@ pub fn of_face<'d>(
     skipped: &HashSet<usize>,
 ) -> Option<Sides> {
     let face = builder.face(at);
-    let normal = match fields.optional("normal") {
-        Some(cursor) => Some(cursor.direction("normal")?),
-        None => None,
-    };
+    let normal = given_normal(fields)?;
     let against = fields.required("against")?;
     let face = face?;
     refuse_quadratic(at, &face, "pairs of nodes")?;

@@ -146,10 +146,7 @@ pub fn of_edge<'d>(
     skipped: &HashSet<usize>,
 ) -> Option<Sides> {
     let edge = builder.edge(at);
-    let normal = match fields.optional("normal") {
-        Some(cursor) => Some(cursor.direction("normal")?),
-        None => None,
-    };
+    let normal = given_normal(fields)?;
     let method = match fields.optional("method") {
         Some(cursor) => Some(cursor.choice(&Method::WORDS)?),
         None => None,
@@ -200,6 +197,14 @@ pub fn of_edge<'d>(
             None
         }
         _ => two.mortar(normal, gap_of(fields) == Gap::None),
+    }
+}
+
+/// The direction in `normal`, if there is one.
+pub fn given_normal(fields: &Fields<'_>) -> Option<Option<[f64; 3]>> {
+    match fields.optional("normal") {
+        Some(cursor) => cursor.direction("normal").map(Some),
+        None => Some(None),
     }
 }
 
