@@ -9,10 +9,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::mirrored::MirroredLcp;
-use super::updated_matrix::UpdatedMatrix;
+use super::updated_matrix::{ColumnReader, UpdatedMatrix};
 use super::waiting_steps::Combination;
 use crate::lcp::basis::Basis;
 use stickslip_numerics::decompositions::Factor;
+use stickslip_numerics::products::add_product;
 
 /// A variable of the dictionary. `W(i)` and `Z(i)` of a mirrored row stand for the member of the couple that
 /// its orientation selects; the other w is known from [`Dictionary::hidden`], the other z is zero.
@@ -157,9 +158,9 @@ impl Dictionary {
         }
     }
 
-    /// Entry (r, c).
-    pub(crate) fn entry(&self, r: usize, c: usize) -> f64 {
-        self.entries.entry(r, c)
+    /// Column c, of which some entries will be read.
+    pub(super) fn reader(&self, c: usize) -> ColumnReader<'_> {
+        self.entries.reader(c)
     }
 
     /// Lets the columns of nonbasic w take over the waiting steps together, before entries of many of them are read.
@@ -286,22 +287,28 @@ impl Dictionary {
         }
     }
 
-    /// M, q, d of the present orientations.
-    fn oriented(&self, lcp: &MirroredLcp) -> (DMatrix<f64>, DVector<f64>, DVector<f64>) {
-        let (mut matrix, mut q, mut d) = (lcp.matrix(), lcp.q.clone(), lcp.covering.clone());
+    /// q of the present orientations.
+    fn oriented_load(&self, lcp: &MirroredLcp) -> Vec<f64> {
+        let of_mirror = |i: usize| lcp.mirrors[i].as_ref().filter(|_| self.turned[i]);
+        (0..self.size).map(|i| of_mirror(i).map_or(lcp.q[i], |mirror| lcp.mirror_start(i, mirror).0)).collect()
+    }
+
+    /// The coefficients of a variable in w = M z + d p over the primary rows of the present orientations.
+    fn write_coefficients(&self, lcp: &MirroredLcp, variable: Slot, into: &mut [f64]) {
+        match variable {
+            Slot::W(_) => return into.fill(0.0),
+            Slot::P => into.copy_from_slice(lcp.covering.as_slice()),
+            Slot::Z(j) => lcp.write_column(j, into),
+        }
+        let p = f64::from(variable == Slot::P);
         for i in (0..self.size).filter(|&i| self.turned[i]) {
-            let Some(mirror) = &lcp.mirrors[i] else {
-                continue;
-            };
-            for j in 0..self.size {
-                matrix[(i, j)] = mirror.reflect(i, |row| matrix[(row, j)], 0.0, 0.0);
+            if let Some(mirror) = &lcp.mirrors[i] {
+                into[i] = mirror.reflect(i, |row| into[row], p, 0.0);
             }
-            (q[i], d[i]) = lcp.mirror_start(i, mirror);
         }
-        for i in (0..self.size).filter(|&i| self.turned[i]) {
-            matrix.column_mut(i).neg_mut();
+        if matches!(variable, Slot::Z(j) if self.turned[j]) {
+            into.iter_mut().for_each(|entry| *entry = -*entry);
         }
-        (matrix, q, d)
     }
 
     /// The active system of the present basis: rows with w nonbasic, columns of the basic z and of p.
@@ -315,56 +322,61 @@ impl Dictionary {
     /// Builds T and the values afresh from the data for the present basis. `false` (and no change) where the
     /// active system is singular.
     pub(crate) fn rebuild(&mut self, lcp: &MirroredLcp) -> bool {
-        let (matrix, q, d) = self.oriented(lcp);
         let (rows, columns, with_p) = self.active();
-        let s = rows.len();
+        let (size, width, s) = (self.size, self.size + 1, rows.len());
         if columns.len() + usize::from(with_p) != s {
             return false;
         }
-        // All nonbasic columns of w = M z + d p + q, and q last.
-        let coefficient = |i: usize, variable: Slot| match variable {
-            Slot::Z(j) => matrix[(i, j)],
-            Slot::P => d[i],
-            Slot::W(_) => 0.0,
-        };
-        let basic: Vec<Slot> = columns.iter().map(|&j| Slot::Z(j)).chain(with_p.then_some(Slot::P)).collect();
-        let system = DMatrix::from_fn(s, s, |a, b| coefficient(rows[a], basic[b]));
-        let width = self.size + 1;
-        // 0 = system x_S + (nonbasic) x_N + q − w_A
-        let right = DMatrix::from_fn(s, width, |a, c| match self.column[c] {
-            Slot::W(i) => f64::from(i == rows[a]),
-            other => -coefficient(rows[a], other),
-        });
-        let constant = DVector::from_fn(s, |a, _| -q[rows[a]]);
-        let factor = Factor::new(system);
-        let (Some(solution), Some(values)) = (factor.solve_many(&right), factor.solve(&constant)) else {
-            return false;
-        };
-        let mut t = vec![0.0; self.size * width];
-        let mut value = vec![0.0; self.size];
-        for (b, &variable) in basic.iter().enumerate() {
-            let Place::Row(r) = self.place(variable) else {
-                return false;
-            };
-            value[r] = values[b];
-            for c in 0..width {
-                t[r + c * self.size] = solution[(b, c)];
-            }
-        }
-        let inactive: Vec<(usize, usize)> = (0..self.size)
+        let basic: Vec<(Slot, usize)> = columns
+            .iter()
+            .map(|&j| Slot::Z(j))
+            .chain(with_p.then_some(Slot::P))
+            .filter_map(|variable| match self.place(variable) {
+                Place::Row(r) => Some((variable, r)),
+                Place::Column(_) => None,
+            })
+            .collect();
+        let inactive: Vec<(usize, usize)> = (0..size)
             .filter_map(|i| match self.place_w[i] {
                 Place::Row(r) => Some((i, r)),
                 Place::Column(_) => None,
             })
             .collect();
-        let coupling = DMatrix::from_fn(inactive.len(), s, |a, b| coefficient(inactive[a].0, basic[b]));
-        let response = &coupling * &solution;
-        let shift = &coupling * &values;
-        for (a, &(i, r)) in inactive.iter().enumerate() {
-            value[r] = q[i] + shift[a];
-            for c in 0..width {
-                t[r + c * self.size] = response[(a, c)] + coefficient(i, self.column[c]);
+        // w = (basic) x_S + (nonbasic) x_N + q: in the active rows, where w is nonbasic, and row by row of the dictionary in
+        // the others.
+        let mut coefficients = vec![0.0; size];
+        let mut system = DMatrix::zeros(s, s);
+        let mut coupling = vec![0.0; size * s];
+        for (b, &(variable, _)) in basic.iter().enumerate() {
+            self.write_coefficients(lcp, variable, &mut coefficients);
+            system.column_mut(b).iter_mut().zip(&rows).for_each(|(entry, &i)| *entry = coefficients[i]);
+            inactive.iter().for_each(|&(i, r)| coupling[r + b * size] = coefficients[i]);
+        }
+        let mut right = DMatrix::zeros(s, width);
+        let mut t = vec![0.0; size * width];
+        for (c, (&variable, column)) in self.column.iter().zip(t.chunks_exact_mut(size.max(1))).enumerate() {
+            let mut own = right.column_mut(c);
+            if let Slot::W(i) = variable {
+                own.iter_mut().zip(&rows).for_each(|(entry, &row)| *entry = f64::from(row == i));
+                continue;
             }
+            self.write_coefficients(lcp, variable, &mut coefficients);
+            own.iter_mut().zip(&rows).for_each(|(entry, &row)| *entry = -coefficients[row]);
+            inactive.iter().for_each(|&(i, r)| column[r] = coefficients[i]);
+        }
+        let q = self.oriented_load(lcp);
+        let constant = DVector::from_fn(s, |a, _| -q[rows[a]]);
+        let factor = Factor::new(system);
+        let (Some(solution), Some(values)) = (factor.solve_many(&right), factor.solve(&constant)) else {
+            return false;
+        };
+        let mut value = vec![0.0; size];
+        inactive.iter().for_each(|&(i, r)| value[r] = q[i]);
+        add_product(&mut value, &coupling, values.as_slice(), size, 1, s);
+        add_product(&mut t, &coupling, solution.as_slice(), size, width, s);
+        basic.iter().zip(values.iter()).for_each(|(&(_, r), own)| value[r] = *own);
+        for (column, solution) in t.chunks_exact_mut(size.max(1)).zip(solution.column_iter()) {
+            basic.iter().zip(solution.iter()).for_each(|(&(_, r), own)| column[r] = *own);
         }
         if !t.iter().chain(&value).all(|entry| entry.is_finite()) {
             return false;

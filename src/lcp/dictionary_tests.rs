@@ -130,7 +130,7 @@ fn waiting_steps_change_no_entry() {
                 close(value, terms.iter().map(|&(c, factor)| factor * columns[c][r]).sum(), "combination");
             }
             let (r, c) = (rng.random_range(0..dictionary.row.len()), rng.random_range(0..width));
-            close(dictionary.entry(r, c), columns[c][r], "entry");
+            close(dictionary.reader(c).entry(r), columns[c][r], "entry");
             // All columns of a copy, so that blocks stay behind in the dictionary itself.
             let mut copy = dictionary.clone();
             for (c, expected) in columns.iter().enumerate() {

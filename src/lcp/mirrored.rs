@@ -112,6 +112,12 @@ impl MirroredLcp {
         }
     }
 
+    /// Column j of M.
+    pub(crate) fn write_column(&self, j: usize, into: &mut [f64]) {
+        into.copy_from_slice(self.base.column(j).as_slice());
+        self.couple(into);
+    }
+
     /// The entries of M column by column, appended.
     pub(crate) fn write_matrix(&self, into: &mut Vec<f64>) {
         for column in self.base.column_iter() {

@@ -31,14 +31,15 @@ impl TieRule {
 /// Entries of two rows of B⁻¹ that differ by less than this multiple of their natural size are equal.
 const SAME: f64 = 1e-10;
 
-/// A tied row as the lexicographic rule sees it.
-pub(crate) trait TiedRow {
-    /// Entry of its row of B⁻¹ in the column of w_`row`, divided by the pivot, and the natural size of that.
-    fn entry(&self, row: usize) -> (f64, f64);
+/// Tied rows as the tie rules see them, numbered from 0.
+pub(crate) trait TiedRows {
+    /// Of each of the rows `of`: the entry of its row of B⁻¹ in the column of w_`row`, divided by the pivot, and the
+    /// natural size of that.
+    fn entries(&self, of: &[usize], row: usize) -> Vec<(f64, f64)>;
     /// Its row in the whole tableau, where an entering variable takes the row of the leaving one.
-    fn table_row(&self) -> usize;
+    fn table_row(&self, tied: usize) -> usize;
     /// Rate at which it falls relative to the natural size of that rate: how surely it falls at all.
-    fn certainty(&self) -> f64;
+    fn certainty(&self, tied: usize) -> f64;
 }
 
 /// The tied row that leaves: index into `names`.
@@ -49,14 +50,14 @@ pub(crate) fn choose(
     rule: &TieRule,
     random: &mut ChaCha8Rng,
     names: &[Variable],
-    rows: &[impl TiedRow],
+    rows: &impl TiedRows,
     at_start: bool,
 ) -> usize {
     if names.len() == 1 {
         return 0;
     }
     match rule {
-        TieRule::FirstRow => (0..names.len()).min_by_key(|&k| rows[k].table_row()).unwrap_or(0),
+        TieRule::FirstRow => (0..names.len()).min_by_key(|&k| rows.table_row(k)).unwrap_or(0),
         TieRule::Random(_) => {
             let mut sorted: Vec<usize> = (0..names.len()).collect();
             sorted.sort_unstable_by_key(|&k| names[k]);
@@ -74,7 +75,7 @@ pub(crate) fn choose(
             for &row in order {
                 // Every entry with its own uncertainty: that of a row whose rate is nearly noise is wide, and must not
                 // hide the differences of the others. A row stays while it could be the smallest.
-                let entries: Vec<(f64, f64)> = left.iter().map(|&k| rows[k].entry(row)).collect();
+                let entries = rows.entries(&left, row);
                 let most = entries.iter().map(|(entry, size)| entry + SAME * size).fold(f64::INFINITY, f64::min);
                 let mut kept = entries.iter();
                 left.retain(|_| kept.next().is_some_and(|(entry, size)| entry - SAME * size <= most));
@@ -83,7 +84,7 @@ pub(crate) fn choose(
                 }
             }
             // Exact rows of B⁻¹ differ somewhere; these do not as far as rounding lets one see.
-            left.into_iter().max_by(|&a, &b| rows[a].certainty().total_cmp(&rows[b].certainty())).unwrap_or(0)
+            left.into_iter().max_by(|&a, &b| rows.certainty(a).total_cmp(&rows.certainty(b))).unwrap_or(0)
         }
     }
 }
@@ -97,22 +98,22 @@ mod tests {
     /// Entries of a row of B⁻¹ / pivot with their sizes, in the columns of w_0, w_1 …, and how surely the row falls.
     struct Row(Vec<(f64, f64)>, f64);
 
-    impl TiedRow for Row {
-        fn entry(&self, row: usize) -> (f64, f64) {
-            self.0[row]
+    impl TiedRows for &[Row] {
+        fn entries(&self, of: &[usize], row: usize) -> Vec<(f64, f64)> {
+            of.iter().map(|&k| self[k].0[row]).collect()
         }
-        fn table_row(&self) -> usize {
+        fn table_row(&self, _: usize) -> usize {
             0
         }
-        fn certainty(&self) -> f64 {
-            self.1
+        fn certainty(&self, tied: usize) -> f64 {
+            self[tied].1
         }
     }
 
     fn chosen(rows: &[Row]) -> usize {
         let names: Vec<Variable> = (0..rows.len()).map(Variable::W).collect();
         let rule = TieRule::Lexicographic(vec![0, 1]);
-        choose(&rule, &mut ChaCha8Rng::seed_from_u64(0), &names, rows, false)
+        choose(&rule, &mut ChaCha8Rng::seed_from_u64(0), &names, &rows, false)
     }
 
     /// A row whose rate is noise has entries of any size after the division by it. They are uncertain by as much, but

@@ -36,6 +36,24 @@ pub(crate) struct UpdatedMatrix {
     filled: usize,
 }
 
+/// A column of which entries are read one by one.
+pub(super) enum ColumnReader<'a> {
+    /// All of it.
+    Whole(Vec<f64>),
+    /// What it was before the waiting steps, and their multipliers.
+    Waiting { steps: &'a WaitingSteps, stored: &'a [f64], multipliers: Vec<f64> },
+}
+
+impl ColumnReader<'_> {
+    /// The entry in a row.
+    pub(super) fn entry(&self, row: usize) -> f64 {
+        match self {
+            ColumnReader::Whole(column) => column[row],
+            ColumnReader::Waiting { steps, stored, multipliers } => steps.entry(row, stored, multipliers),
+        }
+    }
+}
+
 impl UpdatedMatrix {
     /// The matrix with the given entries, column-major; nothing waits.
     pub(crate) fn new(rows: usize, columns: usize, entries: Vec<f64>) -> UpdatedMatrix {
@@ -108,12 +126,13 @@ impl UpdatedMatrix {
         self.open.entries(rows, columns.iter().map(|&j| (j, self.stored(j))))
     }
 
-    /// Entry (row, j); quick in columns that are settled.
-    pub(crate) fn entry(&self, row: usize, j: usize) -> f64 {
+    /// Column j, of which some entries will be read; quick where it is settled.
+    pub(super) fn reader(&self, j: usize) -> ColumnReader<'_> {
         if self.taken(j) < self.full.len() {
-            return self.combined(&[(j, 1.0)])[row];
+            return ColumnReader::Whole(self.combined(&[(j, 1.0)]));
         }
-        self.open.entry(row, j, self.stored(j))
+        let stored = self.stored(j);
+        ColumnReader::Waiting { steps: &self.open, stored, multipliers: self.open.multipliers_of(j, stored) }
     }
 
     /// Σ x_j · column j over the given (j, x_j).

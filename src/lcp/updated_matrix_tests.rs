@@ -82,7 +82,7 @@ fn walk(rng: &mut ChaCha8Rng, (rows, columns): (usize, usize), read: usize) -> b
         let close = |value: f64, expected: f64, what: &str| within(value, expected, 1.0, what);
         // What leaves the matrix as it is comes first: it must be right in columns that are behind too.
         let far = rng.random_range(0..columns);
-        close(updated.entry(other, far), plain.0[(other, far)], "entry");
+        close(updated.reader(far).entry(other), plain.0[(other, far)], "entry");
         let terms: Vec<(usize, f64)> = (0..columns).step_by(3).map(|j| (j, 0.1 * (j % 7) as f64 - 0.2)).collect();
         let expected = terms.iter().fold(DVector::zeros(rows), |sum, &(j, x)| sum + plain.0.column(j) * x);
         for (value, expected) in updated.combined(&terms).iter().zip(expected.iter()) {

@@ -151,11 +151,15 @@ impl WaitingSteps {
         entries
     }
 
-    /// Entry of A in the given row of column j of T.
-    pub(super) fn entry(&self, row: usize, j: usize, stored: &[f64]) -> f64 {
+    /// Multipliers of column j of T, of which entries will be read one by one.
+    pub(super) fn multipliers_of(&self, j: usize, stored: &[f64]) -> Vec<f64> {
+        self.multipliers(stored, |column| f64::from(column == j))
+    }
+
+    /// Entry of A in the given row of a column of T with these multipliers.
+    pub(super) fn entry(&self, row: usize, stored: &[f64], multipliers: &[f64]) -> f64 {
         let kept = if self.cleared[row] { 0.0 } else { stored[row] };
-        let v = self.multipliers(stored, |column| f64::from(column == j));
-        kept + self.u[row..].iter().step_by(self.rows).zip(v).map(|(u, v)| u * v).sum::<f64>()
+        kept + self.u[row..].iter().step_by(self.rows).zip(multipliers).map(|(u, v)| u * v).sum::<f64>()
     }
 
     /// Column c of A becomes `factor` · u of the step at hand and nothing else.

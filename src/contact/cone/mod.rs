@@ -30,6 +30,7 @@ use super::law::{PairLaw, TangentialJoint};
 use super::sum::{HIDDEN, LAW_ROUNDING, Sum};
 use crate::lcp::problem::NOISE;
 use crate::watch::Watch;
+use stickslip_numerics::products::add_columns;
 
 /// Sweeps of projections before each search: the first search starts at the given point.
 pub const FROM_ANYWHERE: &[usize] = &[0, 50, 200, 800];
@@ -252,33 +253,35 @@ impl ConeProblem<'_> {
         let mut values: Vec<f64> = self.load.iter().copied().collect();
         let mut terms: Vec<f64> =
             self.load.iter().zip(self.load_terms).map(|(load, terms)| terms.max(load.abs())).collect();
-        let mut scaled = 0.0;
-        for (k, moved) in z.iter().enumerate().filter(|(_, moved)| **moved != 0.0) {
-            scaled += root(k) * moved.abs();
-            let column = self.stiffness.column(k);
-            values.iter_mut().zip(column.iter()).for_each(|(value, entry)| *value += entry * moved);
-            if !self.rounded {
-                terms.iter_mut().zip(column.iter()).for_each(|(terms, entry)| *terms += (entry * moved).abs());
+        let moved: Vec<(&[f64], f64)> =
+            z.iter().enumerate().filter(|(_, z)| **z != 0.0).map(|(k, z)| (self.column(k), *z)).collect();
+        add_columns(&mut values, &moved);
+        if self.rounded {
+            let scaled: f64 = z.iter().enumerate().map(|(k, z)| root(k) * z.abs()).sum();
+            terms.iter_mut().enumerate().for_each(|(i, terms)| *terms += root(i) * scaled);
+        } else {
+            for (column, z) in moved {
+                terms.iter_mut().zip(column).for_each(|(terms, entry)| *terms += (entry * z).abs());
             }
         }
-        if self.rounded {
-            terms.iter_mut().enumerate().for_each(|(i, terms)| *terms += root(i) * scaled);
-        }
         values.into_iter().zip(terms).map(|(value, magnitude)| Sum { value, magnitude }).collect()
+    }
+
+    /// Column k of R.
+    fn column(&self, k: usize) -> &[f64] {
+        let rows = self.stiffness.nrows();
+        &self.stiffness.as_slice()[k * rows..(k + 1) * rows]
     }
 
     /// What share of any force depends on displacements `moved` of some joints: max over the rows of
     /// |R moved| / Σ |terms|. Where no force feels them it is 1: nothing says that they are rounding.
     fn share(&self, moved: &[(usize, f64)], forces: &[Sum]) -> f64 {
-        let mut felt = false;
-        let mut share = 0.0_f64;
-        for (i, force) in forces.iter().enumerate() {
-            let term: f64 = moved.iter().map(|(joint, z)| self.stiffness[(i, *joint)] * z).sum();
-            if term != 0.0 {
-                felt = true;
-                share = share.max(term.abs() / force.magnitude);
-            }
-        }
+        let mut terms = vec![0.0; forces.len()];
+        let columns: Vec<(&[f64], f64)> = moved.iter().map(|(joint, z)| (self.column(*joint), *z)).collect();
+        add_columns(&mut terms, &columns);
+        let felt = terms.iter().any(|term| *term != 0.0);
+        let of_rows = terms.iter().zip(forces).filter(|(term, _)| **term != 0.0);
+        let share = of_rows.fold(0.0_f64, |share, (term, force)| share.max(term.abs() / force.magnitude));
         if felt { share } else { f64::from(moved.iter().any(|(_, z)| *z != 0.0)) }
     }
 

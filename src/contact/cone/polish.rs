@@ -12,9 +12,9 @@ use super::natural_map::Branch;
 use super::newton::hold;
 use super::{ConeProblem, Point, across, length};
 use crate::contact::sum::Sum;
-use crate::doubled::dot;
 use crate::lcp::problem::NOISE;
 use stickslip_numerics::decompositions::Factor;
+use stickslip_numerics::doubled::add_response;
 
 /// Rounds at most.
 const ROUNDS: usize = 5;
@@ -74,9 +74,10 @@ impl Rows {
     fn at(problem: &ConeProblem, point: &Point) -> Rows {
         let Point { z, bending } = point;
         let mut forces = problem.forces(bending);
-        for (i, force) in forces.iter_mut().enumerate() {
-            // R is symmetric to the last digit: a column is a row.
-            force.value = dot(problem.load[i], problem.stiffness.column(i).iter().zip(bending.iter()));
+        let (mut high, mut low) = (problem.load.as_slice().to_vec(), vec![0.0; bending.len()]);
+        add_response(&mut high, &mut low, problem.stiffness.as_slice(), bending.as_slice());
+        for (force, (high, low)) in forces.iter_mut().zip(high.iter().zip(&low)) {
+            force.value = high + low;
         }
         let mut rows = Rows { joints: Vec::new(), residual: Vec::new(), worst: 0.0 };
         let mut put = |joint: usize, sum: Sum| {
