@@ -113,7 +113,7 @@ pub fn sentence(changes: &[Change]) -> String {
                 "open" => s("open"),
                 // An open pair that cohesion still holds.
                 other if from.starts_with("open") => {
-                    format!("{} from {from} to {other}", s("go"))
+                    format!("{} from {from} to {other}", if one { "goes" } else { "go" })
                 }
                 other => format!("{} ({})", s("open"), other.trim_start_matches("open ").trim_matches(['(', ')'])),
             };

@@ -11,8 +11,8 @@ use crate::contact::written::ContactLcp;
 use crate::lcp::basis::Basis;
 use crate::lcp::basis_solution::vertex;
 use crate::lcp::outcome::{Outcome, Point, RayDirection};
-use crate::model::rules::{Covering, TieBreak};
-use crate::solve::engines::run_scheme;
+use crate::model::rules::Covering;
+use crate::solve::engines::run_past_cycles;
 use crate::solve::error::{QuestionError, SolveError};
 use crate::solve::prepared::Prepared;
 use crate::solve::{Solved, state::RunData};
@@ -176,7 +176,7 @@ impl Cold {
 pub(crate) fn cold(problem: &ContactProblem, watch: &dyn Watch) -> Result<Cold, PathError> {
     // The default covering fits all numbers.
     let contact = contact_lcp(problem, Covering::Cohesive).map_err(|error| PathError::Target(error.to_string()))?;
-    let run = run_scheme(&contact.lcp, contact.tie_rule(TieBreak::Lexicographic), watch);
+    let run = run_past_cycles(&contact, watch);
     let basis = match run.outcome {
         Outcome::Interrupted => return Err(PathError::Interrupted),
         Outcome::Trivial | Outcome::Normal { marginal: false } => Some(run.pivots.basis()),

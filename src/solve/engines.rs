@@ -27,7 +27,7 @@ use crate::lcp::pivot::Pivot;
 use crate::lcp::problem::{Lcp, Scale};
 use crate::lcp::ratio_test::TieRule;
 use crate::lcp::variable::Variable;
-use crate::model::rules::Covering;
+use crate::model::rules::{Covering, TieBreak};
 use crate::watch::Watch;
 
 /// Most contact pairs that the exact engine takes.
@@ -37,6 +37,9 @@ pub const EXACT_ROWS: usize = 400;
 
 /// No run makes more pivots than this; reaching it is an outcome of its own.
 pub const PIVOT_LIMIT: usize = 200_000;
+
+/// A run that cycles is tried with this many seeds of random draws.
+const DRAWS: u64 = 8;
 
 /// A bare LCP with this covering vector in place of its own.
 pub(super) fn covered(lcp: &Arc<MirroredLcp>, covering: PlainCovering) -> Arc<MirroredLcp> {
@@ -61,6 +64,18 @@ pub(super) fn covered(lcp: &Arc<MirroredLcp>, covering: PlainCovering) -> Arc<Mi
 /// of the last basis allow it.
 pub fn run_scheme(lcp: &Arc<MirroredLcp>, rule: TieRule, watch: &dyn Watch) -> Run {
     run_scheme_within(lcp, rule, PIVOT_LIMIT, watch)
+}
+
+/// The LCP of pairs under the lexicographic rule; where that cycles, since rounding hides how rows of B⁻¹ differ, under others.
+pub fn run_past_cycles(contact: &ContactLcp, watch: &dyn Watch) -> Run {
+    let others = std::iter::once(TieBreak::Natural).chain((0..DRAWS).map(TieBreak::Random));
+    let run = |rule| run_scheme(&contact.lcp, contact.tie_rule(rule), watch);
+    let cycles = |run: &Run| matches!(run.outcome, Outcome::Cycle(_));
+    let first = run(TieBreak::Lexicographic);
+    if !cycles(&first) {
+        return first;
+    }
+    others.map(run).find(|run| !cycles(run)).unwrap_or(first)
 }
 
 /// As [`run_scheme`], ending after `most` pivots.

@@ -5,10 +5,12 @@ use nalgebra::DVector;
 use super::course::Course;
 use super::follower::{Follower, Way};
 use super::walk::Walk;
+use crate::answer::check::check_contact;
 use crate::answer::pairs::pair_states;
 use crate::answer::record::{Ray, State, Verdict};
 use crate::contact::lcp::contact_lcp;
 use crate::contact::problem::ContactProblem;
+use crate::contact::refine::refined;
 use crate::contact::rows::RowKind;
 use crate::explain::ray::{self, all_answers};
 use crate::lcp::outcome::RayDirection;
@@ -151,7 +153,12 @@ impl Walk<'_> {
         if found.basis.is_none() {
             return Ok(Err(found.how()));
         }
-        let state = state_of(&problem, &found.contact, &found.point);
+        let point = refined(&problem, &found.contact, found.point);
+        let state = state_of(&problem, &found.contact, &point);
+        // Near a limit rounding can leave a basis that belongs to no state.
+        if !check_contact(&problem, &state, None).passed {
+            return Ok(Err("in a state that fails its check"));
+        }
         let pairs = pair_states(&problem, &found.contact, &state);
         let states = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
         Ok(Ok(There { z: state.z + committed, states }))

@@ -15,6 +15,7 @@ mod event;
 mod follower;
 mod force_form;
 mod integrals;
+mod loose_scheme;
 mod rate_problem;
 mod record;
 mod released;

@@ -24,8 +24,7 @@ use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::problem::{NOISE, Scale};
-use crate::model::rules::TieBreak;
-use crate::solve::engines::run_scheme;
+use crate::solve::engines::run_past_cycles;
 use crate::watch::Watch;
 use stickslip_numerics::decompositions::Factor;
 
@@ -46,12 +45,12 @@ struct Row {
 
 /// The LCP of one moment, with the way back to the joints.
 pub(super) struct RateProblem<'a> {
-    laws: Laws<'a>,
+    pub(super) laws: Laws<'a>,
     pub(super) contact: ContactLcp,
-    released: Released,
-    rate: &'a DVector<f64>,
+    pub(super) released: Released,
+    pub(super) rate: &'a DVector<f64>,
     /// Σ |terms| of the load's rate.
-    sizes: &'a DVector<f64>,
+    pub(super) sizes: &'a DVector<f64>,
 }
 
 /// How the rate problem ends.
@@ -75,7 +74,7 @@ pub(super) struct Rates {
 }
 
 /// The combination of joint forces that is the x of a couple, without its constant.
-fn terms(laws: Laws<'_>, meaning: RowId, open: bool) -> Vec<(usize, f64)> {
+pub(super) fn terms(laws: Laws<'_>, meaning: RowId, open: bool) -> Vec<(usize, f64)> {
     let RowId { pair, couple } = meaning;
     let sign = match couple {
         RowKind::Normal => return vec![(pair, 1.0)],
@@ -91,7 +90,7 @@ fn terms(laws: Laws<'_>, meaning: RowId, open: bool) -> Vec<(usize, f64)> {
 }
 
 /// The joint that the z of a couple moves, and in which sense.
-fn moved(laws: Laws<'_>, meaning: RowId) -> (usize, f64) {
+pub(super) fn moved(laws: Laws<'_>, meaning: RowId) -> (usize, f64) {
     let tangential = laws.problem.system.pairs[meaning.pair].plane_tangential().unwrap_or(meaning.pair);
     match meaning.couple {
         RowKind::Normal => (meaning.pair, 1.0),
@@ -119,7 +118,7 @@ impl<'a> RateProblem<'a> {
 
     /// Solves it.
     pub(super) fn solve(&self, standing: &Standing, watch: &dyn Watch) -> (Ended, Run) {
-        let run = run_scheme(&self.contact.lcp, self.contact.tie_rule(TieBreak::Lexicographic), watch);
+        let run = run_past_cycles(&self.contact, watch);
         let joints = self.released.pick(self.rate);
         if let Some(loose) = self.released.driven_motion(&joints, &self.released.pick(self.sizes)) {
             let mut motion = DVector::zeros(self.rate.len());
@@ -128,17 +127,25 @@ impl<'a> RateProblem<'a> {
         }
         let found = |z: &[f64], basic: &[usize]| {
             let z: Vec<f64> = z.iter().map(|z| z.max(0.0) * self.contact.length_unit).collect();
-            Ended::Rates(self.rates(standing, &z, basic))
+            let rates = self.rates(standing, &z, basic);
+            match self.unresisted(standing, &rates) {
+                None => Ok(rates),
+                Some(motion) => Err(motion),
+            }
         };
+        let another = || search(&self.contact.lcp, |z, basic| found(z, basic).ok());
         let ended = match &run.outcome {
-            Outcome::Trivial | Outcome::Normal { .. } => found(&run.point.z, &run.pivots.basis().z),
-            Outcome::Ray(ray) => match search(&self.contact.lcp) {
-                Some((z, basic)) => found(&z, &basic),
-                None => {
+            Outcome::Trivial | Outcome::Normal { .. } => match found(&run.point.z, &run.pivots.basis().z) {
+                Ok(rates) => Ended::Rates(rates),
+                Err(motion) => another().map_or(Ended::Ray { motion, p: 0.0 }, Ended::Rates),
+            },
+            Outcome::Ray(ray) => another().map_or_else(
+                || {
                     let motion = self.with_released(&ray.z, &DVector::zeros(self.rate.len()));
                     Ended::Ray { motion, p: run.point.p * self.contact.force_unit }
-                }
-            },
+                },
+                Ended::Rates,
+            ),
             Outcome::Interrupted => Ended::Interrupted,
             Outcome::PivotLimit => Ended::Breakdown("the rate problem came to the limit of pivots".to_owned()),
             Outcome::Cycle(_) => Ended::Breakdown("the rate problem cycles".to_owned()),
@@ -252,9 +259,9 @@ impl<'a> RateProblem<'a> {
     }
 }
 
-/// The first basis that is an answer, where there are few rows: R alone does not make the rate problem one that Lemke's
+/// What is made of the first basis that is an answer and of which something is made, where there are few rows: R alone does not make the rate problem one that Lemke's
 /// algorithm must solve. A basis whose rounding hides the load's rate decides nothing.
-fn search(lcp: &MirroredLcp) -> Option<(Vec<f64>, Vec<usize>)> {
+fn search<T>(lcp: &MirroredLcp, made: impl Fn(&[f64], &[usize]) -> Option<T>) -> Option<T> {
     let n = lcp.full_size;
     if n > SEARCHED_ROWS {
         return None;
@@ -277,7 +284,7 @@ fn search(lcp: &MirroredLcp) -> Option<(Vec<f64>, Vec<usize>)> {
             let noise = NOISE * (lcp.q.amax() + lcp.scale.row[primary[row]] * size);
             noise <= HIDDEN * lcp.q.amax() && column(row) * point.z[row] >= -NOISE * size && point.w[row] >= -noise
         });
-        stands.then_some((point.z, z))
+        if stands { made(&point.z, &z) } else { None }
     })
 }
 

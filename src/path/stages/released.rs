@@ -14,7 +14,7 @@ pub(super) struct Released {
     pub(super) joints: Vec<usize>,
     factor: Cholesky<f64, Dyn>,
     /// Motions of the released joints alone that cost no energy, orthonormal; |F| × r.
-    loose: DMatrix<f64>,
+    pub(super) loose: DMatrix<f64>,
 }
 
 impl Released {

@@ -11,10 +11,12 @@ use super::follower::{Follower, Limit, Place, Targets, Way, recorded};
 use super::rate_problem::{Ended, RateProblem, Rates};
 use super::record::History;
 use super::standing::{Laws, Normal, Reached, Sense, Standing, joint_scales};
+use crate::answer::check::TOLERANCE;
 use crate::answer::pairs::{JointState, Shares};
 use crate::answer::record::{PairState, State};
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::{RowId, RowKind};
+use crate::contact::sum::LAW_ROUNDING;
 use crate::contact::written::ContactLcp;
 use crate::explain::sentence::pivot_records;
 use crate::lcp::outcome::Run;
@@ -105,7 +107,7 @@ impl<'a> Walk<'a> {
         };
         let (step, mut now) = next_event(self.place.laws, &self.standing, &rates, sizes);
         // What is reached at the end but for rounding is reached at the end: there is no way left on which it turns.
-        let to = if step >= 1.0 - t - NOISE { 1.0 } else { t + step };
+        let to = if step >= 1.0 - t - LAW_ROUNDING { 1.0 } else { t + step };
         if step > 1.0 - t {
             now.clear();
         }
@@ -119,7 +121,7 @@ impl<'a> Walk<'a> {
             self.standing.classify(self.place.laws, &course.sizes_at(system, t), reached);
             return Ok(Stretch::Event(to));
         }
-        self.advance(course, &problem, &rates, (t, to), &now);
+        self.advance(course, &problem, &rates, (t, to), &now)?;
         *reached = now;
         way.moments.push(self.moment(to, false));
         Ok(Stretch::Event(to))
@@ -133,7 +135,7 @@ impl<'a> Walk<'a> {
         rates: &Rates,
         (t, to): (f64, f64),
         reached: &[Reached],
-    ) {
+    ) -> Result<(), PathError> {
         let (laws, system) = (self.place.laws, &*self.place.laws.problem.system);
         let load = course.load_at(system, to);
         let standing = &self.standing;
@@ -146,8 +148,17 @@ impl<'a> Walk<'a> {
             })
             .collect();
         problem.correct(standing, &rates.moving, &close, &mut z, &load, |pair| laws.constant(pair));
-        let mut force = laws.force(&z, &load);
+        let found = laws.force(&z, &load);
+        let mut force = found.clone();
         problem.settle(standing, &rates.moving, &mut force, |pair| laws.constant(pair));
+        let sizes = laws.force_sizes(&z, &course.sizes_at(system, to));
+        // Whatever the rates were: what stands at the end has to be a state.
+        if (0..z.len()).any(|joint| (found[joint] - force[joint]).abs() > TOLERANCE * sizes[joint]) {
+            return Err(breakdown(
+                t,
+                "the forces of the laws are not those of the displacements that the rates lead to",
+            ));
+        }
         self.place.way = self.way_of(rates);
         for meaning in &rates.moving {
             let sense = match meaning.couple {
@@ -162,6 +173,7 @@ impl<'a> Walk<'a> {
         self.place.factors = course.factors_at(to);
         self.place.gaps = course.gaps_at(to);
         self.standing.classify(laws, &course.sizes_at(system, to), reached);
+        Ok(())
     }
 
     /// What every pair does at these rates.

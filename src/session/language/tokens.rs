@@ -22,8 +22,10 @@ enum Quote {
 
 /// The commands of a line, each with its comment cut off and without surrounding blanks; blank ones are left out.
 ///
-/// `#` begins a comment only at the start of a word, as in a shell.
+/// `#` begins a comment only at the start of a word, as in a shell. A byte order mark, which some editors put before the first
+/// line of a file, is none of its characters.
 pub fn commands(line: &str) -> Vec<&str> {
+    let line = line.strip_prefix('\u{feff}').unwrap_or(line);
     spans(line).into_iter().map(|(start, end)| line[start..end].trim()).filter(|command| !command.is_empty()).collect()
 }
 

@@ -5,6 +5,7 @@
 //! solved on its own by a search over the states of the pairs that shares nothing with the program.
 
 mod judge;
+mod to_the_end;
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,0 +1,84 @@
+//! Histories whose last state before a limit, or at the end of a stage, rounding made another one of.
+
+use nalgebra::{Matrix3, Vector3};
+use serde_json::Value;
+use stickslip::answer::record::Verdict;
+use stickslip::path::stages::{History, HistoryEnd, follow};
+
+use super::judge::{Data, breach};
+use crate::common::{Case, near};
+
+fn followed(case: &Case) -> History {
+    let values = case.scenario.parameter_values();
+    let history = follow(case.prepared.case(&case.scenario, &values)).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(breach(&Data::of(&case.prepared, &values), &history), None);
+    history
+}
+
+fn read(text: &str) -> Value {
+    serde_json::from_str(text).expect("JSON")
+}
+
+/// A frame on three feet: the first one without friction, the second one with a spring askew, all of it lifted at one end.
+/// Where its weight is taken off the first two feet hang, and the third slides. Nothing but the spring, the third foot and its
+/// friction bears then, so that equilibrium says at which weight. The frame can turn without strain there: the rounding of its
+/// stiffness, taken for one that resists, led on to the end of the stage, 1e13 away, where no contact force was left.
+#[test]
+fn what_only_rounding_resists_is_no_way_on() {
+    let text = read(include_str!("lifted_frame.json"));
+    let at = |name: &str| [0, 1].map(|i| text["nodes"][name][i].as_f64().expect("a coordinate"));
+    let turned = |[x, y]: [f64; 2], force: [f64; 2]| Vector3::new(force[0], force[1], x * force[1] - y * force[0]);
+    let bars = [["a0", "b0"], ["a1", "b1"], ["a2", "b2"], ["b0", "b1"], ["b1", "b2"]].map(|ends| ends.map(at));
+    let area_density_gravity = 0.01 * 0.001 * 10.0;
+    let weight: Vector3<f64> = bars
+        .iter()
+        .map(|[a, b]| {
+            let middle = [0, 1].map(|i| 0.5 * (a[i] + b[i]));
+            turned(middle, [0.0, -area_density_gravity * (a[0] - b[0]).hypot(a[1] - b[1])])
+        })
+        .sum();
+    let lift = turned(at("b0"), [0.5 * 0.0002603, 0.5 * 0.001508]);
+    let spring = turned(at("a1"), [-0.8355, 0.4227]);
+    // The foot slides either way: of the two weights the one that presses it is the limit.
+    let limits: Vec<f64> = [0.3, -0.3]
+        .iter()
+        .filter_map(|friction| {
+            let foot = turned(at("a2"), [*friction, 1.0]);
+            let found = Matrix3::from_columns(&[foot, spring, weight]).lu().solve(&-lift)?;
+            (found[0] > 0.0 && (0.5..1.2).contains(&found[2])).then_some(found[2])
+        })
+        .collect();
+    let limit = limits.into_iter().fold(0.0, f64::max);
+    let history = followed(&Case::json(text));
+    let HistoryEnd::Limit { stage: 2, collapse, .. } = &history.end else { panic!("{:?}", history.end) };
+    assert_eq!(collapse.verdict, Some(Verdict::Certified));
+    let reached = &history.stages[2].moments.last().expect("an end").factors;
+    let of = |case: &str| history.cases.iter().position(|name| name == case).expect("a case");
+    near("weight at the limit", reached[of("w")], limit, 1e-9, 1.0);
+}
+
+/// An arch that stands at the end of a stage, but for the last digits of the place, where a joint is about to open: what was found
+/// there as a jump was no state, for no forces belonged to its displacements.
+#[test]
+fn the_end_of_a_stage_is_no_jump() {
+    let history = followed(&Case::json(read(include_str!("arch_of_seven.json"))));
+    assert_eq!(history.end, HistoryEnd::Complete);
+    for stage in &history.stages {
+        assert!(stage.moments.iter().all(|moment| !moment.jump));
+        assert!(stage.energy.expect("a structure").residual <= 1e-10, "{:?}", stage.energy);
+    }
+}
+
+/// All joints of a symmetric arch take up its weight at once: the ties of the first rates cycled under the lexicographic rule.
+/// In proportion to its weight nothing turns back, so that the way ends in the answer of the loads at once.
+#[test]
+fn an_arch_takes_up_its_weight() {
+    let case = Case::json(read(include_str!("arch_of_five.json")));
+    let history = followed(&case);
+    assert_eq!(history.end, HistoryEnd::Complete);
+    let at_once = case.solve(&[]);
+    for (end, one) in history.stages[0].end.pairs.iter().zip(&at_once.pairs) {
+        near(&end.id, end.x_n, one.x_n, 1e-9, 2e-4);
+        near(&end.id, end.x_t, one.x_t, 1e-9, 2e-4);
+    }
+}
