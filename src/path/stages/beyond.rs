@@ -6,8 +6,8 @@ use super::course::Course;
 use super::follower::{Follower, Way};
 use super::walk::Walk;
 use crate::answer::check::check_contact;
-use crate::answer::pairs::pair_states;
-use crate::answer::record::{Ray, State, Verdict};
+use crate::answer::pairs::{JointState, pair_states};
+use crate::answer::record::{PairState, Ray, State, Verdict};
 use crate::contact::lcp::contact_lcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::refine::refined;
@@ -150,18 +150,38 @@ impl Walk<'_> {
     ) -> Result<Result<There, &'static str>, PathError> {
         let problem = self.problem_behind(&committed, factors, gaps);
         let found = cold(&problem, self.place.watch)?;
-        if found.basis.is_none() {
-            return Ok(Err(found.how()));
+        let mut how = found.how();
+        if found.basis.is_some() {
+            let point = refined(&problem, &found.contact, found.point);
+            let state = state_of(&problem, &found.contact, &point);
+            // Near a limit rounding can leave a basis that belongs to no state.
+            if check_contact(&problem, &state, None).passed {
+                let pairs = pair_states(&problem, &found.contact, &state);
+                return Ok(Ok(There::new(state, committed, &pairs)));
+            }
+            how = "in a state that fails its check";
         }
-        let point = refined(&problem, &found.contact, found.point);
-        let state = state_of(&problem, &found.contact, &point);
-        // Near a limit rounding can leave a basis that belongs to no state.
-        if !check_contact(&problem, &state, None).passed {
-            return Ok(Err("in a state that fails its check"));
+        match self.nearest_of_all(&problem, &committed) {
+            Some((state, pairs)) => Ok(Ok(There::new(state, committed, &pairs))),
+            None => Ok(Err(how)),
         }
-        let pairs = pair_states(&problem, &found.contact, &state);
-        let states = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
-        Ok(Ok(There { z: state.z + committed, states }))
+    }
+
+    /// Of all answers, where there are few schemes, the one with the least motion from where it stands.
+    fn nearest_of_all(
+        &self,
+        problem: &ContactProblem,
+        committed: &DVector<f64>,
+    ) -> Option<(JointState, Vec<PairState>)> {
+        let found = all_answers(problem, self.place.watch).filter(|found| !found.within_rounding)?;
+        let contact = contact_lcp(problem, Covering::Cohesive).ok()?;
+        let motion = |state: &JointState| (&state.z + committed - &self.standing.z).amax();
+        let states = found.answers.into_iter().map(|answer| JointState::at(problem, answer.state.z, 0.0));
+        let nearest = states
+            .filter(|state| check_contact(problem, state, None).passed)
+            .min_by(|a, b| motion(a).total_cmp(&motion(b)))?;
+        let pairs = pair_states(problem, &contact, &nearest);
+        Some((nearest, pairs))
     }
 }
 
@@ -171,4 +191,11 @@ pub(super) struct There {
     pub(super) z: DVector<f64>,
     /// What every pair does on the way to it.
     pub(super) states: Vec<(State, Option<State>)>,
+}
+
+impl There {
+    /// From a state in increments from committed slips.
+    fn new(increments: JointState, committed: DVector<f64>, pairs: &[PairState]) -> There {
+        There { z: increments.z + committed, states: pairs.iter().map(|pair| (pair.state, pair.held)).collect() }
+    }
 }
