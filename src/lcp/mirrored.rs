@@ -83,6 +83,17 @@ impl MirroredLcp {
         }
     }
 
+    /// The same with another covering vector over the primary rows, > 0; that of a mirror is that of its row.
+    pub fn with_covering(&self, covering: DVector<f64>) -> MirroredLcp {
+        let mut lcp = MirroredLcp { covering, ..self.clone() };
+        for i in 0..lcp.size() {
+            let normal = lcp.coupling(i).map_or(0.0, |(n, f)| f * lcp.covering[n]);
+            let own = lcp.covering[i];
+            lcp.mirrors[i].iter_mut().for_each(|mirror| mirror.covering = 2.0 * (own - normal));
+        }
+        lcp
+    }
+
     /// Size of the load: see [`Scale::load`].
     pub fn load_size(&self) -> f64 {
         self.scale.load.filter(|load| *load > 0.0).unwrap_or_else(|| self.q.amax())

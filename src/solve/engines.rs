@@ -38,7 +38,7 @@ pub const EXACT_ROWS: usize = 400;
 /// No run makes more pivots than this; reaching it is an outcome of its own.
 pub const PIVOT_LIMIT: usize = 200_000;
 
-/// A run that cycles is tried with this many seeds of random draws.
+/// Runs that cycle or end in a ray are tried again with this many seeds of random draws.
 const DRAWS: u64 = 8;
 
 /// A bare LCP with this covering vector in place of its own.
@@ -76,6 +76,22 @@ pub fn run_past_cycles(contact: &ContactLcp, watch: &dyn Watch) -> Run {
         return first;
     }
     others.map(run).find(|run| !cycles(run)).unwrap_or(first)
+}
+
+/// What is made of the first run of several under covering vectors drawn at random of which something is made: a ray under one
+/// of them does not say that there is no answer.
+pub fn under_other_coverings<T>(
+    contact: &ContactLcp,
+    watch: &dyn Watch,
+    mut made: impl FnMut(&Run) -> Option<T>,
+) -> Option<T> {
+    (0..DRAWS).take_while(|_| !watch.stop()).find_map(|seed| {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let drawn = contact.lcp.covering.map(|d| d * f64::powf(2.0, random.random_range(-3.0..3.0)));
+        let lcp = Arc::new(contact.lcp.with_covering(drawn));
+        let run = run_scheme(&lcp, contact.tie_rule(TieBreak::Random(seed)), watch);
+        if matches!(run.outcome, Outcome::Trivial | Outcome::Normal { marginal: false }) { made(&run) } else { None }
+    })
 }
 
 /// As [`run_scheme`], ending after `most` pivots.

@@ -13,10 +13,11 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::refine::refined;
 use crate::contact::rows::RowKind;
 use crate::explain::ray::{self, all_answers};
-use crate::lcp::outcome::RayDirection;
+use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::variable::Variable;
 use crate::model::rules::Covering;
 use crate::path::start::{PathError, cold, state_of};
+use crate::solve::engines::under_other_coverings;
 
 /// The collapse is certified this part of a stage further on: at the limit itself the forces still balance.
 const CERTIFIED_AT: f64 = 1e-6;
@@ -150,21 +151,21 @@ impl Walk<'_> {
     ) -> Result<Result<There, &'static str>, PathError> {
         let problem = self.problem_behind(&committed, factors, gaps);
         let found = cold(&problem, self.place.watch)?;
-        let mut how = found.how();
-        if found.basis.is_some() {
-            let point = refined(&problem, &found.contact, found.point);
-            let state = state_of(&problem, &found.contact, &point);
-            // Near a limit rounding can leave a basis that belongs to no state.
-            if check_contact(&problem, &state, None).passed {
-                let pairs = pair_states(&problem, &found.contact, &state);
-                return Ok(Ok(There::new(state, committed, &pairs)));
-            }
-            how = "in a state that fails its check";
-        }
-        match self.nearest_of_all(&problem, &committed) {
-            Some((state, pairs)) => Ok(Ok(There::new(state, committed, &pairs))),
-            None => Ok(Err(how)),
-        }
+        // Near a limit rounding can leave a basis that belongs to no state.
+        let checked = |point: Point| {
+            let state = state_of(&problem, &found.contact, &refined(&problem, &found.contact, point));
+            let pairs = pair_states(&problem, &found.contact, &state);
+            check_contact(&problem, &state, None).passed.then_some((state, pairs))
+        };
+        let first = found.basis.as_ref().and_then(|_| checked(found.point.clone()));
+        let state = first
+            .or_else(|| self.nearest_of_all(&problem, &committed))
+            .or_else(|| under_other_coverings(&found.contact, self.place.watch, |run| checked(run.point.clone())));
+        Ok(match state {
+            Some((state, pairs)) => Ok(There::new(state, committed, &pairs)),
+            None if found.basis.is_some() => Err("in a state that fails its check"),
+            None => Err(found.how()),
+        })
     }
 
     /// Of all answers, where there are few schemes, the one with the least motion from where it stands.

@@ -2,9 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::released::Released;
+use super::released::{OUTSIDE, Released, loose_motions};
 use super::standing::{Laws, joint_scales};
 use crate::lcp::problem::NOISE;
+use stickslip_numerics::decompositions::svd;
 
 /// See the module.
 pub(super) struct Condensed {
@@ -33,6 +34,42 @@ impl Condensed {
         let across = DMatrix::from_fn(released.joints.len(), joints.len(), |a, b| r[(released.joints[a], joints[b])]);
         let follow = released.solve_many(&across);
         Condensed { stiffness: own - across.transpose() * &follow, joints, place, follow }
+    }
+
+    /// Makes the stiffness and the load exactly 0 along the motions of the joints that may move, and of the released ones, that
+    /// cost no energy and on which the load does next to no work; `false` where there are none.
+    ///
+    /// Such motions are known to [`OUTSIDE`], the last digits of a file may leave as much. A force of 10⁻¹⁰ against a motion
+    /// that is resisted by 10⁻²⁰ would be one that nothing balances.
+    pub(super) fn release_loose(
+        &mut self,
+        laws: Laws<'_>,
+        (released, moving): (&Released, &[usize]),
+        load: &mut DVector<f64>,
+    ) -> bool {
+        let mut all: Vec<usize> = released.joints.iter().chain(moving).copied().collect();
+        all.sort_unstable();
+        all.dedup();
+        let loose = loose_motions(&laws.problem.system, &all);
+        if loose.ncols() == released.loose.ncols() {
+            return false;
+        }
+        let part = |at: usize, one: usize| all.binary_search(&self.joints[at]).map_or(0.0, |row| loose[(row, one)]);
+        let Some(svd) = svd(&DMatrix::from_fn(self.joints.len(), loose.ncols(), part)) else { return false };
+        let moves: Vec<usize> = (0..svd.sigma.len()).filter(|&k| svd.sigma[k] > OUTSIDE).collect();
+        let motions = svd.u.select_columns(&moves).map(|part| if part.abs() <= OUTSIDE { 0.0 } else { part });
+        let own = DVector::from_fn(self.joints.len(), |at, _| load[self.joints[at]]);
+        let work = motions.tr_mul(&own);
+        if work.amax() > OUTSIDE * own.amax() {
+            return false;
+        }
+        let along = &motions * work;
+        self.joints.iter().zip(along.iter()).for_each(|(&joint, part)| load[joint] -= part);
+        let across = motions.tr_mul(&self.stiffness);
+        self.stiffness -= &motions * across;
+        let across = &self.stiffness * &motions;
+        self.stiffness -= across * motions.transpose();
+        true
     }
 
     /// Entry of two of its joints.

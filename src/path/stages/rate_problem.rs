@@ -24,11 +24,12 @@ use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::{Mirror, MirroredLcp};
 use crate::lcp::outcome::{Outcome, Run};
 use crate::lcp::problem::{NOISE, Scale};
-use crate::solve::engines::run_past_cycles;
+use crate::solve::engines::{run_past_cycles, under_other_coverings};
 use crate::watch::Watch;
 use stickslip_numerics::decompositions::Factor;
 
-/// Rate problems with at most this many rows are searched basis by basis where Lemke's algorithm ends in a ray.
+/// Rate problems with at most this many rows are searched basis by basis where Lemke's algorithm ends in a ray, others under
+/// other covering vectors.
 const SEARCHED_ROWS: usize = 14;
 
 /// The rounding of a basis found by search stays below this part of the load's rate.
@@ -112,8 +113,15 @@ impl<'a> RateProblem<'a> {
         let free = (0..pairs.len()).filter(|&i| standing.tangential[i] == Tangential::Free);
         joints.extend(free.filter_map(|i| pairs[i].plane_tangential()));
         let released = Released::new(&laws.problem.system, joints)?;
-        let contact = write(laws, standing, &released, (rate, sizes));
+        let contact = write(laws, standing, &released, (rate, sizes), false)?;
         Some(RateProblem { laws, contact, released, rate, sizes })
+    }
+
+    /// The same with nothing at all that resists the motions that cost no energy, where the load does next to no work on them
+    /// ([`Condensed::release_loose`]); `None` where there is no such motion.
+    pub(super) fn neutral(&self, standing: &Standing) -> Option<RateProblem<'a>> {
+        let contact = write(self.laws, standing, &self.released, (self.rate, self.sizes), true)?;
+        Some(RateProblem { contact, released: self.released.clone(), ..*self })
     }
 
     /// Solves it.
@@ -133,9 +141,13 @@ impl<'a> RateProblem<'a> {
                 Some(motion) => Err(motion),
             }
         };
-        let another = || search(&self.contact.lcp, |z, basic| found(z, basic).ok());
+        let of_run = |run: &Run| found(&run.point.z, &run.pivots.basis().z);
+        let another = || match self.contact.lcp.full_size <= SEARCHED_ROWS {
+            true => search(&self.contact.lcp, |z, basic| found(z, basic).ok()),
+            false => under_other_coverings(&self.contact, watch, |run| of_run(run).ok()),
+        };
         let ended = match &run.outcome {
-            Outcome::Trivial | Outcome::Normal { .. } => match found(&run.point.z, &run.pivots.basis().z) {
+            Outcome::Trivial | Outcome::Normal { .. } => match of_run(&run) {
                 Ok(rates) => Ended::Rates(rates),
                 Err(motion) => another().map_or(Ended::Ray { motion, p: 0.0 }, Ended::Rates),
             },
@@ -259,13 +271,10 @@ impl<'a> RateProblem<'a> {
     }
 }
 
-/// What is made of the first basis that is an answer and of which something is made, where there are few rows: R alone does not make the rate problem one that Lemke's
+/// What is made of the first basis that is an answer and of which something is made: R alone does not make the rate problem one that Lemke's
 /// algorithm must solve. A basis whose rounding hides the load's rate decides nothing.
 fn search<T>(lcp: &MirroredLcp, made: impl Fn(&[f64], &[usize]) -> Option<T>) -> Option<T> {
     let n = lcp.full_size;
-    if n > SEARCHED_ROWS {
-        return None;
-    }
     // Primary row of each whole row; the two rows of a couple never move together.
     let mut primary: Vec<usize> = (0..n).collect();
     let couples = lcp.mirrors.iter().enumerate().filter_map(|(row, mirror)| Some((row, mirror.as_ref()?.whole)));
@@ -309,13 +318,23 @@ fn primary_rows(laws: Laws<'_>, standing: &Standing) -> Vec<Row> {
 /// Writes the LCP, dimensionless as that of eq. (8).
 ///
 /// What of q may be rounding is 0. Where a reversal finds a part in neutral equilibrium, such rows may be all there are: read
-/// as rates they would have no answer, for nothing resists the motion that is free.
-fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: (&DVector<f64>, &DVector<f64>)) -> ContactLcp {
+/// as rates they would have no answer, for nothing resists the motion that is free. `neutral`: see [`RateProblem::neutral`].
+fn write(
+    laws: Laws<'_>,
+    standing: &Standing,
+    released: &Released,
+    rate: (&DVector<f64>, &DVector<f64>),
+    neutral: bool,
+) -> Option<ContactLcp> {
     let system = &*laws.problem.system;
     let primary = primary_rows(laws, standing);
     let count = primary.len();
-    let stiffness = Condensed::new(laws, released, primary.iter().flat_map(|row| [row.joint, row.pair]).collect());
-    let (load, noise) = stiffness.load(laws, released, rate);
+    let mut stiffness = Condensed::new(laws, released, primary.iter().flat_map(|row| [row.joint, row.pair]).collect());
+    let (mut load, noise) = stiffness.load(laws, released, rate);
+    let moving: Vec<usize> = primary.iter().map(|row| row.joint).collect();
+    if neutral && !stiffness.release_loose(laws, (released, &moving), &mut load) {
+        return None;
+    }
     let normal_of = |pair: usize| primary.iter().position(|row| row.pair == pair && row.couple == RowKind::Normal);
     let meaning_of = |row: &Row| RowId { pair: row.pair, couple: row.couple };
     // Of a couple of both senses S holds λ_τ alone: the LCP adds f λ_n and makes the mirror.
@@ -390,7 +409,7 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: (&DVect
         },
         full_size: rows.len(),
     };
-    ContactLcp {
+    Some(ContactLcp {
         swapped: vec![false; rows.len()],
         lcp: Arc::new(lcp),
         friction: laws.problem.frictions(),
@@ -400,5 +419,5 @@ fn write(laws: Laws<'_>, standing: &Standing, released: &Released, rate: (&DVect
         normal_row,
         facet_rows,
         polygon: Polygon::PLANE,
-    }
+    })
 }

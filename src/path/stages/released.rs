@@ -7,9 +7,10 @@ use crate::lcp::problem::NOISE;
 
 /// A motion of the kernel whose part in the other joints is below this lies in the released ones alone (the kernel is
 /// orthonormal; its rows are known to about 1e-12).
-const OUTSIDE: f64 = 1e-8;
+pub(super) const OUTSIDE: f64 = 1e-8;
 
 /// The released joints F with R_FF factorized.
+#[derive(Clone)]
 pub(super) struct Released {
     pub(super) joints: Vec<usize>,
     factor: Cholesky<f64, Dyn>,

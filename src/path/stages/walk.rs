@@ -91,11 +91,17 @@ impl<'a> Walk<'a> {
         way: &mut Way,
     ) -> Result<Stretch, PathError> {
         let system = &*self.place.laws.problem.system;
-        let Some(problem) = RateProblem::new(self.place.laws, &self.standing, (rate, sizes)) else {
+        let Some(mut problem) = RateProblem::new(self.place.laws, &self.standing, (rate, sizes)) else {
             return Err(breakdown(t, "the stiffness of the open pairs is not positive definite"));
         };
         let start = Instant::now();
-        let (ended, run) = problem.solve(&self.standing, self.place.watch);
+        let (mut ended, mut run) = problem.solve(&self.standing, self.place.watch);
+        if matches!(ended, Ended::Ray { .. })
+            && let Some(neutral) = problem.neutral(&self.standing)
+            && let (Ended::Rates(rates), found) = neutral.solve(&self.standing, self.place.watch)
+        {
+            (ended, run, problem) = (Ended::Rates(rates), found, neutral);
+        }
         self.lemke_seconds += start.elapsed().as_secs_f64();
         way.pivots += run.pivots.count();
         self.last_run = Some((run, problem.contact.clone()));
