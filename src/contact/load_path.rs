@@ -13,14 +13,17 @@ use crate::lcp::basis_solution::vertex;
 use crate::lcp::mirrored::MirroredLcp;
 use crate::model::rules::Covering;
 
-/// Whether all variables of `basis` are ≥ 0 (up to rounding) in this LCP.
+/// Whether all variables of `basis` are ≥ 0 (up to rounding) in this LCP. A displacement is as good as 0 beside the others, or
+/// where no force feels it: where nothing has moved yet there are no others.
 pub fn is_answer(lcp: &MirroredLcp, basis: &Basis) -> bool {
     let Some(point) = vertex(lcp, basis) else {
         return false;
     };
     let force = lcp.q.amax().max(point.w.iter().fold(0.0, |a: f64, b| a.max(b.abs())));
     let length = point.z.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    point.w.iter().all(|w| *w >= -1e-11 * force) && point.z.iter().all(|z| *z >= -1e-11 * length)
+    let felt = |(z, (row, _)): (&f64, (usize, bool))| lcp.scale.row[row] * lcp.scale.column[row] * z.abs();
+    point.w.iter().all(|w| *w >= -1e-11 * force)
+        && point.z.iter().zip(lcp.primary_rows()).all(|one| *one.0 >= -1e-11 * length || felt(one) <= 1e-11 * force)
 }
 
 /// The dimensionless LCP of base + t · increment: q is that of `problem`, the covering that of the increment of the
