@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use super::style::{Role, Style};
 use super::table::{Cell, Column, Row, Table};
 use super::{length_unit, moment_unit};
+use crate::answer::record::OutcomeKind;
 use crate::answer::rounding::{denoised, largest};
 use crate::model::units::Units;
 use crate::path::stages::{History, HistoryEnd};
@@ -40,6 +41,9 @@ pub fn write(out: &mut dyn Write, history: &History, units: &Units, style: &Styl
             };
             let text = format!("stage {}: the structure jumps at {} of it; {balance}", index + 1, short(moment.t));
             style.paragraph(out, Role::Warning, &text)?;
+        }
+        if let Some(failure) = stage.end.failure.as_ref().filter(|_| stage.end.outcome == OutcomeKind::CheckFailed) {
+            style.paragraph(out, Role::Bad, &format!("stage {}: {failure}", index + 1))?;
         }
     }
     Ok(())

@@ -10,7 +10,7 @@ use super::integrals::Integrals;
 use super::record::{History, HistoryEnd, Moment, StageResult};
 use super::standing::Laws;
 use crate::answer::pairs::JointState;
-use crate::answer::record::{OutcomeKind, PairState, Ray, State};
+use crate::answer::record::{OutcomeKind, PairState, Ray, State, Verdict};
 use crate::contact::problem::ContactProblem;
 use crate::path::change::{between, sentence, with_directions};
 use crate::path::start::PathError;
@@ -195,9 +195,14 @@ pub(super) trait Follower<'a> {
         let pairs = self.states();
         let slip = pairs.iter().zip(before).map(|(pair, before)| slip_since(pair, before)).collect();
         let mut end = prepared.history_answer(&problem, &self.state(), (&way.last_slip, met), pairs);
+        // What is proved of a limit does not hang on the last digits of the state before it, whose check tells of them.
+        let is_proof = |collapse: &Ray| collapse.verdict.is_some_and(Verdict::is_proof);
         if let Some((_, collapse)) = limit
-            && end.is_answer()
+            && (end.is_answer() || is_proof(collapse))
         {
+            if let Some(failure) = end.failure.take() {
+                end.notes.push(format!("where the history ends, {failure}; that it ends there is proved by itself"));
+            }
             end.outcome = OutcomeKind::Ray;
             end.p = collapse.p;
             end.ray = Some(collapse.clone());
