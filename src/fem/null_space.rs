@@ -9,6 +9,10 @@ use stickslip_numerics::decompositions::svd;
 /// Most columns of which a singular value decomposition is made: its time grows with their third power.
 pub const DENSE: usize = 240;
 
+/// Least pivot, as a share of the largest entry of its vector: a basis of vectors of about one size, and no more than one
+/// digit lost a pivot.
+const LEAST_PIVOT: f64 = 0.1;
+
 /// Σ coefficient · unknown.
 pub type Terms = Vec<(usize, f64)>;
 
@@ -122,28 +126,37 @@ fn by_elimination(rows: &[Terms], columns: usize, null: f64, most: usize) -> Opt
     Some((basis.collect(), if least.is_finite() { least } else { 0.0 }))
 }
 
+/// Gauss–Jordan on the vectors, pivots from the left. A unit of a column in which all are small would make of them a basis
+/// of large vectors that hardly differ, and of what they share many digits are lost: such a column waits for the next sweep.
+/// A vector that is left has its largest entry in a column without pivot, so that each sweep finds one.
 fn echelon(mut basis: Vec<DVector<f64>>, columns: usize) -> DMatrix<f64> {
-    // Gauss–Jordan on the vectors, pivots from the left.
     let mut done = 0;
-    for column in 0..columns {
-        let Some(best) = (done..basis.len()).max_by(|&a, &b| basis[a][column].abs().total_cmp(&basis[b][column].abs()))
-        else {
-            break;
-        };
-        if basis[best][column].abs() < 1e-6 {
-            continue;
-        }
-        basis.swap(done, best);
-        let pivot = basis[done][column];
-        basis[done] /= pivot;
-        let leading = basis[done].clone();
-        for (i, vector) in basis.iter_mut().enumerate() {
-            let factor = vector[column];
-            if i != done && factor != 0.0 {
-                vector.axpy(-factor, &leading, 1.0);
+    let mut is_pivot = vec![false; columns];
+    let mut size: Vec<f64> = basis.iter().map(|vector| vector.amax()).collect();
+    while done < basis.len() {
+        let before = done;
+        for column in 0..columns {
+            let share = |i: usize| basis[i][column].abs() / size[i];
+            let best = (done..basis.len()).max_by(|&a, &b| share(a).total_cmp(&share(b)));
+            let Some(best) = best.filter(|&best| !is_pivot[column] && share(best) >= LEAST_PIVOT) else { continue };
+            basis.swap(done, best);
+            size.swap(done, best);
+            let pivot = basis[done][column];
+            basis[done] /= pivot;
+            let leading = basis[done].clone();
+            for (i, vector) in basis.iter_mut().enumerate() {
+                let factor = vector[column];
+                if i != done && factor != 0.0 {
+                    vector.axpy(-factor, &leading, 1.0);
+                    size[i] = vector.amax();
+                }
             }
+            is_pivot[column] = true;
+            done += 1;
         }
-        done += 1;
+        if done == before {
+            break;
+        }
     }
     for vector in &mut basis {
         vector.apply(|x| {
@@ -189,13 +202,35 @@ mod tests {
                     .map(|found| echelon(found.unwrap().0, columns));
             // Two equations a pin; those round the ring leave its rotations.
             assert_eq!((one.ncols(), other.ncols()), (bodies - supported, bodies - supported));
-            assert!((&one - &other).amax() < 1e-9, "{}", (&one - &other).amax());
+            // Both bases together have no more than one of them.
+            let found = one.ncols();
+            let column = |j: usize| if j < found { one.column(j) } else { other.column(j - found) };
+            let both = DMatrix::from_fn(columns, 2 * found, |i, j| column(j)[i]);
+            let sigma = svd(&both).unwrap().sigma;
+            assert!(sigma[found] < 1e-9 * sigma[0], "{sigma:?}");
             for row in &rows {
                 for vector in other.column_iter() {
                     assert!(row.iter().map(|&(i, a)| a * vector[i]).sum::<f64>().abs() < 1e-11);
                 }
             }
         }
+    }
+
+    /// A spring at (0, 0, h) of a body in space along a direction that hardly feels x: t + ω × a with d·(t + ω × a) = 0. With
+    /// x for the first pivot the vectors had entries of 1/d_x; none may be far from the others.
+    #[test]
+    fn vectors_are_of_about_one_size() {
+        let (d, h) = ([1e-4, 0.8, 0.6], 0.7);
+        let row: Terms = vec![(0, d[0]), (1, d[1]), (2, d[2]), (3, -h * d[1]), (4, h * d[0])];
+        let basis = null_space(std::slice::from_ref(&row), 6, 1024.0 * f64::EPSILON, usize::MAX).unwrap().basis;
+        assert_eq!(basis.ncols(), 5);
+        for vector in basis.column_iter() {
+            assert!((1.0..=10.0).contains(&vector.amax()), "{basis}");
+            let left = row.iter().map(|&(i, a)| a * vector[i]).sum::<f64>();
+            assert!(left.abs() <= 8.0 * f64::EPSILON * vector.amax(), "{left:e}");
+        }
+        let sigma = svd(&basis).unwrap().sigma;
+        assert!(sigma[4] >= 0.1 * sigma[0], "{sigma:?}");
     }
 
     /// A chain of thousands of bodies that share x and y at one place each, the first one clamped: rotations are left.

@@ -420,3 +420,61 @@ fn a_hinge_and_a_bar_at_a_small_angle_take_a_moment_in_their_plane() {
     let refused = refused(model([0.0, -0.7_f64.sin(), 0.7_f64.cos()]));
     assert!(refused.contains("node n is free to move by turning about"), "{refused}");
 }
+
+/// A frame on three feet, one rough, turns about that by metres until a soft spring at n3 holds it. The spring's line passes
+/// the middle of the nodes at some ε of its length: the turn about the vertical axis that leaves it as long as it is was then
+/// taken 1/ε times as large as the others, and the rounding of that weighed on feet that are 10⁵ times as stiff. By statics,
+/// about the vertical through n0: S (r₃ × d)_z = P x₁; the rest from moments about the horizontals.
+#[test]
+fn a_frame_that_turns_far_against_a_soft_spring() {
+    let (k, push) = (0.05, 0.3);
+    let (h, d) = ([-0.444, 0.602], [-0.444_f64, 0.602, -0.322]);
+    let d = d.map(|entry| entry / (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt());
+    for beside in [1e-5, 1e-3, 0.3] {
+        let feet = [[-2.0, 0.1, 0.3], [1.0, 2.1, -0.2], [1.1, -1.9, 0.17]];
+        // At 4/3 of its way from the middle of the feet a node is at that way from the middle of all four.
+        let top = [0.1 / 3.0 + 0.9 * h[0] + beside * h[1], 0.1 + 0.9 * h[1] - beside * h[0], 1.3];
+        let bar = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|node| format!("n{node}"));
+            json!({ "id": format!("{a}{b}"), "nodes": [a, b], "kind": "frame", "material": "m", "section": "s" })
+        };
+        let contact = |foot: usize| {
+            json!({ "id": format!("c{foot}"), "node": format!("n{foot}"), "against": "ground", "normal": [0, 0, 1],
+                    "friction": if foot == 0 { 0.6 } else { 0.0 } })
+        };
+        let weight = |node: usize| json!({ "point": { "at": format!("n{node}"), "force": [0, 0, -1] } });
+        let case = space(json!({
+            "materials": { "m": { "E": 3e7, "nu": 0 } },
+            "sections": { "s": { "area": 0.01, "inertia_y": 1e-4, "inertia_z": 1e-4, "torsion": 1e-4 } },
+            "nodes": { "n0": feet[0], "n1": feet[1], "n2": feet[2], "n3": top },
+            "bars": [bar(0, 1), bar(1, 2), bar(2, 0), bar(0, 3), bar(1, 3), bar(2, 3)],
+            "contacts": [contact(0), contact(1), contact(2)],
+            "springs": [{ "at": "n3", "direction": d, "stiffness": k }],
+            "loads": {
+                "w": { "items": [weight(0), weight(1), weight(2), weight(3)] },
+                "p": { "items": [{ "point": { "at": "n1", "force": [0, push, 0] } }] }
+            }
+        }));
+        let answer = case.solve(&[]);
+        is_answer(&answer);
+        let [r1, r2, r3] =
+            [feet[1], feet[2], top].map(|place| std::array::from_fn::<_, 3, _>(|c| place[c] - feet[0][c]));
+        let s = push * r1[0] / (r3[0] * d[1] - r3[1] * d[0]);
+        // y₁ N₁ + y₂ N₂ = m_x, x₁ N₁ + x₂ N₂ = m_y: weights, the push at z₁ and the spring at n3.
+        let mx = r1[1] + r2[1] + r3[1] + r1[2] * push + s * (r3[1] * d[2] - r3[2] * d[1]);
+        let my = r1[0] + r2[0] + r3[0] + s * (r3[0] * d[2] - r3[2] * d[0]);
+        let det = r1[1] * r2[0] - r2[1] * r1[0];
+        let (n1, n2) = ((mx * r2[0] - r2[1] * my) / det, (r1[1] * my - r1[0] * mx) / det);
+        let n0 = 4.0 + s * d[2] - n1 - n2;
+        // A force is a sum of nine terms R_ij z_j of up to EA/L · slip, in which R_ij and the product are rounded.
+        let rounding = 9.0 * f64::EPSILON * 1e5 * answer.pairs[2].slip_size();
+        for (pair, right) in answer.pairs.iter().zip([n0, n1, n2]) {
+            near("pressure", pair.x_n, right, rounding, 1.0);
+        }
+        for (found, right) in answer.pairs[0].friction().iter().zip([s * d[0], s * d[1] - push]) {
+            near("friction", *found, right, rounding, 1.0);
+        }
+        let u = moved(&answer, "n3");
+        near("spring", k * (u[0] * d[0] + u[1] * d[1] + u[2] * d[2]), s, rounding, 1.0);
+    }
+}
