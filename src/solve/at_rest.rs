@@ -3,6 +3,7 @@
 
 use super::cold::Extent;
 use super::error::SolveError;
+use super::ladder::Ladder;
 use super::prepared::Prepared;
 use super::state::Solved;
 use crate::answer::attempt::{AttemptEngine, AttemptRules};
@@ -19,11 +20,26 @@ use crate::model::rules::Rules;
 use crate::watch::Watch;
 
 impl Prepared {
-    /// The answer in which no joint moves that repeats another, freshly checked; `None` where there is none.
+    /// The last rung of a ladder: the answer in which no joint moves that repeats another, with all tries before it; `None`
+    /// where there is none, or where it fails its check, which is then a try like the others.
     ///
     /// # Errors
     /// Stopped from outside.
-    pub(super) fn answer_at_rest(
+    pub(super) fn tried_at_rest(
+        &self,
+        ladder: &mut Ladder,
+        problem: &ContactProblem,
+        extent: Extent,
+        watch: &dyn Watch,
+    ) -> Result<Option<Solved>, SolveError> {
+        Ok(self.answer_at_rest(problem, extent, watch)?.and_then(|again| ladder.add(again).ok()))
+    }
+
+    /// That answer, freshly checked; `None` where there is none.
+    ///
+    /// # Errors
+    /// Stopped from outside.
+    fn answer_at_rest(
         &self,
         problem: &ContactProblem,
         extent: Extent,

@@ -151,10 +151,7 @@ impl Prepared {
         if let Some(found) = ladder.climb(&retries(false), EXACT_BUDGET, watch, &attempt, &|_| false)? {
             return Ok(found);
         }
-        let found = match self.answer_at_rest(problem, Extent::Counted, watch)? {
-            Some(again) => ladder.add(again).ok(),
-            None => None,
-        };
+        let found = self.tried_at_rest(&mut ladder, problem, Extent::Counted, watch)?;
         Ok(found.unwrap_or_else(|| ladder.without_answer()))
     }
 }
@@ -215,9 +212,7 @@ impl Job<'_> {
                 AlongLoad::NotTried => {}
             }
         }
-        if let Some(again) = self.prepared.answer_at_rest(self.problem, Extent::Whole, self.watch)?
-            && let Ok(answer) = ladder.add(again)
-        {
+        if let Some(answer) = self.prepared.tried_at_rest(&mut ladder, self.problem, Extent::Whole, self.watch)? {
             return Ok(answer);
         }
         if let Some(found) = found {

@@ -93,9 +93,7 @@ impl Prepared {
             }
             last = again;
         }
-        if let Some(again) = self.answer_at_rest(problem, Extent::Whole, watch)?
-            && let Ok(answer) = ladder.add(again)
-        {
+        if let Some(answer) = self.tried_at_rest(&mut ladder, problem, Extent::Whole, watch)? {
             return Ok(answer);
         }
         Ok(ladder.with_history(on_polygon.unwrap_or(last)))
