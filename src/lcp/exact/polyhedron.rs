@@ -15,6 +15,7 @@ use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
 use crate::lcp::exact::dyadic::WholeRows;
+use crate::lcp::exact::quotient::{Divisor, Factor};
 use crate::lcp::exact::rational_solve::clear_denominators;
 use crate::lcp::exact::scalar::BigInt;
 
@@ -252,6 +253,9 @@ impl Polyhedron {
         let width = self.nonbasic.len() + 1;
         let pivot = self.rows[row][column].clone();
         let own = std::mem::take(&mut self.rows[row]);
+        let divisor = Divisor::new(&self.denominator);
+        let [by, none] = [&pivot, &BigInt::zero()].map(Factor::new);
+        let own_factors: Vec<Factor> = own.iter().map(Factor::new).collect();
         for (i, other) in self.rows.iter_mut().enumerate() {
             if i == row {
                 continue;
@@ -259,21 +263,16 @@ impl Polyhedron {
             if other[column].is_zero() {
                 if pivot != self.denominator {
                     for entry in other.iter_mut().filter(|entry| !entry.is_zero()) {
-                        *entry = &*entry * &pivot / &self.denominator;
+                        *entry = divisor.quotient([&Factor::new(entry), &by], [&none, &none]);
                     }
                 }
                 continue;
             }
-            let factor = other[column].clone();
+            let factor = Factor::new(&other[column]);
             for j in (0..width).filter(|&j| j != column) {
-                let mut sum = &other[j] * &pivot;
-                if !own[j].is_zero() {
-                    sum -= &factor * &own[j];
+                if !(other[j].is_zero() && own[j].is_zero()) {
+                    other[j] = divisor.quotient([&Factor::new(&other[j]), &by], [&factor, &own_factors[j]]);
                 }
-                if !sum.is_zero() && !self.denominator.is_one() {
-                    sum /= &self.denominator;
-                }
-                other[j] = sum;
             }
         }
         self.rows[row] = own
