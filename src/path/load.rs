@@ -97,6 +97,10 @@ pub fn trace(case: Case<'_>, solved: Option<&Solved>, name: &str, reach: LoadRea
         Some(to) if to < start => -1.0,
         _ => 1.0,
     };
+    // The matrices of many pairs take a second: of several loads that are followed, those after a stop do not begin.
+    if watch.stop() {
+        return Err(PathError::Interrupted);
+    }
     let contact = path_lcp(&problem, &(sign * &direction));
     let (mut engine, from_zero) = match engine(&contact, present.as_ref()) {
         Some(engine) => (engine, from_zero),

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use stickslip::model::embedded;
 use stickslip::model::quantity::Quantity;
 use stickslip::path::envelope::{Axis, envelope};
+use stickslip::path::limit::limit;
 use stickslip::path::load::{LoadReach, trace};
 use stickslip::path::start::PathError;
 use stickslip::solve::prepared::prepare;
@@ -48,4 +49,28 @@ fn paths_stop_at_every_question() {
             assert!(asked >= first, "{command}, {first}: {asked}");
         }
     }
+}
+
+/// A path that is asked for after a stop, as that of the next load of a summary, ends before its matrices are made: it has
+/// nothing to tell of any progress.
+#[test]
+fn what_is_asked_for_after_a_stop_does_not_begin() {
+    struct Stopped(AtomicUsize);
+    impl Watch for Stopped {
+        fn progress(&self, _: &str, _: f64) {
+            self.0.fetch_add(1, Ordering::Relaxed);
+        }
+        fn stop(&self) -> bool {
+            true
+        }
+    }
+    let scenario = embedded::load("beam").expect("embedded");
+    let (values, prepared) = (scenario.parameter_values(), prepare(&scenario, &Quiet).expect("sound"));
+    let solved = prepared.case(&scenario, &values).solve().expect("solved");
+    let watch = Stopped(AtomicUsize::new(0));
+    let case = prepared.case(&scenario, &values).watched(&watch);
+    let reach = LoadReach { to: Some(250.0), through: false };
+    assert!(matches!(trace(case, Some(&solved), "F2", reach), Err(PathError::Interrupted)));
+    assert!(matches!(limit(case, Some(&solved), "F2"), Err(PathError::Interrupted)));
+    assert_eq!(watch.0.into_inner(), 0);
 }
