@@ -194,6 +194,39 @@ fn a_file_that_changed_or_went_is_told() {
     assert_eq!(three.values()["F2"], 123.0);
 }
 
+/// A journal keeps values and rules, no texts: what a file held before it was read again is not made up from what it holds now.
+#[test]
+fn what_a_file_held_before_it_was_read_again_is_told_to_be_gone() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = beam(folder.path(), "b.json");
+    let open = |name: &str| {
+        let mut one =
+            Session::new(stickslip::model::load::load_file(&file).unwrap(), &stickslip::watch::Quiet).unwrap();
+        one.keep_journal(Journal::new(folder.path(), Path::new(name)));
+        one
+    };
+    let text = fs::read_to_string(&file).unwrap();
+    for (after, ways) in [("", (2, 0)), ("; undo", (1, 1))] {
+        fs::write(&file, &text).unwrap();
+        let mut one = open(after);
+        shown(&mut one, "set F2 123");
+        fs::write(&file, text.replace("Multi-span", "Another")).unwrap();
+        shown(&mut one, &format!("reload; set F2 150; set F2 160{after}"));
+        drop(one);
+        let mut two = session("gap");
+        two.keep_journal(Journal::new(folder.path(), Path::new(after)));
+        let said = shown(&mut two, "restore");
+        assert!(
+            said.contains("`reload` cannot be undone: what") && said.contains("b.json held then is not kept"),
+            "{said}"
+        );
+        assert_eq!(two.undo_depths(), ways);
+        (0..ways.0).for_each(|_| drop(shown(&mut two, "undo")));
+        assert!(refused(&mut two, "undo").contains("nothing to undo"));
+        assert_eq!((two.values()["F2"], two.scenario().title.contains("Another")), (123.0, true));
+    }
+}
+
 /// Everything that a user or a file can say, with what steers a terminal in it.
 #[test]
 fn no_input_steers_the_terminal() {

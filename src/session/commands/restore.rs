@@ -56,15 +56,48 @@ impl Setup {
     }
 }
 
+impl Chosen {
+    /// The scenario as it is given, and whether that is a file.
+    fn key(&self) -> (String, bool) {
+        (self.scenario.clone(), self.file)
+    }
+}
+
 /// The scenarios of a journal, each loaded once.
-#[derive(Default)]
-struct Scenarios(HashMap<(String, bool), Setup>);
+struct Scenarios {
+    loaded: HashMap<(String, bool), Setup>,
+    /// Of each the hash of the text that it had last.
+    last: HashMap<(String, bool), String>,
+}
 
 impl Scenarios {
+    /// Those of some records, before a state that they end in.
+    fn of(records: &[Record], now: &State) -> Scenarios {
+        let recorded = records.iter().filter_map(|record| match record {
+            Record::Start(chosen) | Record::Change(_, chosen) | Record::Saved(chosen) => Some(chosen),
+            Record::Undo | Record::Redo | Record::Auto(_) => None,
+        });
+        let end = match now {
+            State::Written(chosen) => Some(chosen),
+            State::Here(_) => None,
+        };
+        let last = recorded.chain(end).map(|chosen| (chosen.key(), chosen.text.clone())).collect();
+        Scenarios { loaded: HashMap::new(), last }
+    }
+
+    /// Whether what was chosen belongs to another text of its scenario, from before that was read again: a journal keeps no
+    /// texts.
+    fn is_lost(&self, chosen: &Chosen) -> bool {
+        let key = chosen.key();
+        let is_there =
+            || self.loaded.get(&key).is_some_and(|setup| Hash::of(&setup.scenario.text).long() == chosen.text);
+        self.last.get(&key).is_some_and(|last| *last != chosen.text) && !is_there()
+    }
+
     /// What was chosen, on the scenario as it is now.
     fn setup(&mut self, chosen: &Chosen, io: &Output<'_>) -> Result<Setup, CommandError> {
-        let key = (chosen.scenario.clone(), chosen.file);
-        let mut setup = match self.0.get(&key) {
+        let key = chosen.key();
+        let mut setup = match self.loaded.get(&key) {
             Some(setup) => setup.clone(),
             None => {
                 let scenario = match chosen.file {
@@ -72,7 +105,7 @@ impl Scenarios {
                     false => embedded::load(&chosen.scenario).map_err(CommandError::Scenario)?,
                 };
                 let setup = Setup::of(scenario);
-                self.0.insert(key, setup.clone());
+                self.loaded.insert(key, setup.clone());
                 setup
             }
         };
@@ -147,13 +180,16 @@ impl Rebuilt {
             }
             Record::Saved(chosen) => {
                 let before = std::mem::replace(&mut self.now, State::Written(chosen.clone()));
-                let State::Written(before) = before else { return };
+                let key = match before {
+                    State::Written(before) => Some(before.key()),
+                    State::Here(_) => None,
+                };
                 for (_, state) in self.undo.iter_mut().chain(&mut self.redo) {
-                    if let State::Written(state) = state
-                        && (&state.scenario, state.file) == (&before.scenario, before.file)
-                    {
-                        state.scenario.clone_from(&chosen.scenario);
-                        state.file = chosen.file;
+                    let State::Written(state) = state else { continue };
+                    // What was in a file that is written over is values of that from now on.
+                    if Some(state.key()) == key || state.key() == chosen.key() {
+                        (state.scenario, state.file) = chosen.key();
+                        state.text.clone_from(&chosen.text);
                     }
                 }
             }
@@ -232,19 +268,26 @@ impl Session {
 
     /// Takes the records over, with an answer, or leaves everything as it was.
     fn rebuild(&mut self, records: &[Record], io: &Output<'_>) -> Result<Vec<String>, CommandError> {
-        let mut scenarios = Scenarios::default();
         let mut rebuilt = Rebuilt::of(self);
         records.iter().cloned().for_each(|record| rebuilt.take(record));
+        let mut scenarios = Scenarios::of(records, &rebuilt.now);
         let written = match &rebuilt.now {
             State::Written(chosen) => Some(chosen.text.clone()),
             State::Here(_) => None,
         };
         let mut now = rebuilt.now.setup(&mut scenarios, io)?;
         let solved = if rebuilt.auto { Some(now.solve(io.watch)?) } else { None };
-        let mut changes = |states: Vec<(String, State)>| -> Result<Vec<Change>, CommandError> {
+        let mut notes = Vec::new();
+        let mut changes = |states: Vec<(String, State)>, done: &str| -> Result<Vec<Change>, CommandError> {
             let mut changes = Vec::new();
             // from the last one back: a state that can no longer be made ends the way
             for (command, state) in states.into_iter().rev() {
+                if let State::Written(chosen) = &state
+                    && scenarios.is_lost(chosen)
+                {
+                    notes.push(format!("`{command}` cannot be {done}: what {} held then is not kept", chosen.scenario));
+                    break;
+                }
                 match state.setup(&mut scenarios, io) {
                     Ok(mut setup) => {
                         if Arc::ptr_eq(&setup.scenario, &now.scenario) {
@@ -259,7 +302,7 @@ impl Session {
             changes.reverse();
             Ok(changes)
         };
-        let (undo, redo) = (changes(rebuilt.undo)?, changes(rebuilt.redo)?);
+        let (undo, redo) = (changes(rebuilt.undo, "undone")?, changes(rebuilt.redo, "done again")?);
         let changed = written.is_some_and(|text| text != Hash::of(&now.scenario.text).long());
         (self.now, self.undo, self.redo, self.auto) = (now, undo, redo, rebuilt.auto);
         self.take_answer(solved);
@@ -268,7 +311,10 @@ impl Session {
         let name = &self.now.scenario.name;
         let note =
             format!("{name} is not as it was: the values and rules are those of before, the rest is as it is now");
-        Ok(if changed { vec![note] } else { Vec::new() })
+        if changed {
+            notes.insert(0, note);
+        }
+        Ok(notes)
     }
 }
 
