@@ -83,6 +83,8 @@ pub struct Turn {
     /// The largest difference of a contact force or gap from the cycle before, as a share of the largest of its kind;
     /// `None` for the first.
     pub difference: Option<f64>,
+    /// By how much the gap of a pair that stays open has grown most, where that difference leaves it out: no force feels it.
+    pub gap_growth: f64,
     /// Working schemes passed on the way there and back.
     pub schemes: usize,
     /// Whether the next cycle passes the same in the same order; `None` where none was followed.
@@ -319,14 +321,23 @@ fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -
             PairCycle { pair: pair.id.clone(), there, back, net: sizes.moved(net), total: pair.z_t }
         });
         let pairs: Vec<PairCycle> = pairs.collect();
+        let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
+        // Where slips go on, gaps that never close may grow with them: the next cycle, farther open, does not feel it.
+        let grows: Vec<bool> = (0..pairs.len()).map(|pair| net > 0.0 && stays_open(halves, pair)).collect();
+        let gap_growth = std::cell::Cell::new(0.0);
         let off = |now: usize, before: usize| {
-            end(now).iter().zip(end(before)).fold(0.0, |largest: f64, (a, b)| {
+            end(now).iter().zip(end(before)).zip(&grows).fold(0.0, |largest: f64, ((a, b), grows)| {
                 let friction = match (a.space, b.space) {
                     (Some(a), Some(b)) => apart(a.x_t, b.x_t),
                     _ => (a.x_t - b.x_t).abs(),
                 };
                 let forces = sizes.force_share((a.x_n - b.x_n).abs().max(friction));
-                largest.max(forces).max(sizes.gap_share((a.z_n - b.z_n).abs()))
+                let gap = sizes.gap_share((a.z_n - b.z_n).abs());
+                if *grows && a.z_n > b.z_n && gap > same {
+                    gap_growth.set(f64::max(gap_growth.get(), a.z_n - b.z_n));
+                    return largest.max(forces);
+                }
+                largest.max(forces).max(gap)
             })
         };
         // The place before the first cycle is the end of the way there from the unloaded structure.
@@ -336,13 +347,13 @@ fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -
         // What moves to and fro without loss is open, or on a bound of 0.
         let lossless = lost.iter().all(|lost| sizes.is_lossless(*lost));
         let lost = if lossless { [0.0; 2] } else { lost };
-        let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
         let schemes = |first: usize| stages[first..].iter().take(2).flat_map(StageResult::schemes);
         // In space places passed on the way are among them.
         let in_space = end(back).iter().any(|pair| pair.space.is_some());
         let repeated = (number + 1 < cycles && !in_space).then(|| schemes(there).eq(schemes(there + 2)));
         let before = turns.last().and_then(|turn: &Turn| turn.difference);
-        turns.push(Turn { dissipated: lost, pairs, difference, schemes: schemes(there).count(), repeated });
+        let (gap_growth, schemes) = (gap_growth.get(), schemes(there).count());
+        turns.push(Turn { dissipated: lost, pairs, difference, gap_growth, schemes, repeated });
         // A cycle that only comes near to the one before is followed by others that come nearer: how far in all?
         let tail = difference.zip(before).map_or(0.0, |(now, before)| tail(now, before));
         if closed > same || tail > same {
@@ -363,6 +374,12 @@ fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -
         break;
     }
     (kind, turns)
+}
+
+/// Whether a pair is open all through the stages, with nothing that holds it across its gap.
+fn stays_open(stages: [&StageResult; 2], pair: usize) -> bool {
+    let mut moments = stages.into_iter().flat_map(|stage| &stage.moments).map(|moment| &moment.pairs[pair]);
+    moments.all(|pair| pair.z_n > 0.0 && pair.bound == 0.0)
 }
 
 /// Where a load that goes to and fro between these values ends on its way.
@@ -395,7 +412,17 @@ fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: (&str, [
             format!("{slips} in cycle {count}: it is elastic, and so is every further one, the same")
         }
         Kind::Alternates => format!("the slips of cycle {count} go to and fro; {}", recurrence(turns, same)),
-        Kind::Ratchets => format!("cycle {count} leaves slips behind; {}", recurrence(turns, same)),
+        Kind::Ratchets => {
+            let grown = turns.last().map_or(0.0, |turn| turn.gap_growth);
+            let grown = match grown > 0.0 {
+                true => format!(
+                    ", and gaps that stay open all the time wider by up to {}, which no force feels",
+                    short(grown)
+                ),
+                false => String::new(),
+            };
+            format!("cycle {count} leaves slips behind{grown}; {}", recurrence(turns, same))
+        }
         Kind::Collapses => collapse_sentence(history, load),
         Kind::Undecided if matches!(history.end, HistoryEnd::Limit { .. }) => collapse_sentence(history, load),
         Kind::Undecided => {
@@ -435,8 +462,9 @@ fn recurrence(turns: &[Turn], same: f64) -> String {
         ),
         (Some(now), _) => format!("to {now:.1e} of the largest"),
     };
+    let others = if last.gap_growth > 0.0 { "other " } else { "" };
     format!(
-        "its forces and gaps are at its end what they were at its beginning, {near}. The rates depend on nothing else: to these \
+        "its forces and {others}gaps are at its end what they were at its beginning, {near}. The rates depend on nothing else: to these \
          digits every further cycle is the same{next}"
     )
 }

@@ -65,6 +65,27 @@ fn the_strip_on_a_slope_ratchets() {
     assert_eq!(found["kind"], "alternates");
 }
 
+/// A stop above the strip, from which it goes away: its gap grows by the same every day, and no force depends on it.
+#[test]
+fn a_gap_that_only_grows_hides_no_ratchet() {
+    let stop = r#""contacts": [
+        { "id": "stop", "node": "n10", "against": "ground", "normal": [-1, 0], "law": "frictionless", "gap": 1 },"#;
+    let strip = embedded::load("ratchet").expect("embedded").text;
+    let scenario = load_text("strip", &strip.replace("\"contacts\": [", stop), None).expect("sound");
+    let found = report(&mut session(scenario), "cycle heat 0..50").unwrap();
+    assert_eq!(found["kind"], "ratchets", "{found}");
+    let last = found["cycles"].as_array().unwrap().last().unwrap();
+    near(&last["gap_growth"], 0.0824, 1e-12);
+    for pair in last["pairs"].as_array().unwrap().iter().filter(|pair| pair["pair"] != "stop") {
+        near(&pair["net"], -0.0824, 1e-12);
+    }
+    let sentence = found["sentence"].as_str().unwrap();
+    assert!(
+        sentence.contains("gaps that stay open all the time wider by up to 0.0824, which no force feels"),
+        "{sentence}"
+    );
+}
+
 /// The largest pull that shakes down is 60, whichever end is looked at first; more than 180 cannot be carried.
 #[test]
 fn the_largest_pull_that_shakes_down() {
