@@ -286,3 +286,39 @@ fn what_comes_to_its_limit_at_the_end_of_a_stage_has_not_slipped() {
         assert_eq!(changes, 0, "{degrees}");
     }
 }
+
+/// A plate of side 1 and weight W on a floor, 1e-5 before a wall: unloaded it simply stands, though floor and wall repeat one
+/// another in their common node. Heat makes it lean on the wall, a pull A away from it and a lift B at the middle of the left edge
+/// turn it about, until only the ends of floor (force N, friction f N) and wall (M, f M downwards) hold it, with f = 1/2:
+///   N − f M = W − α B,   M + α A = f N,   about the foot of the wall W/2 − α B + α A/2 + M = 0,
+/// so that α = 7/10 W/(B + A/2).
+#[test]
+fn a_plate_short_of_a_wall_stands_unloaded_and_is_followed_from_there() {
+    let [weight, pull, lift] = [10.0, 2.355, 7.279];
+    let text = serde_json::json!({
+        "format": "stickslip/1", "title": "plate",
+        "materials": { "a": { "E": 1e6, "nu": 0.2, "density": 1, "expansion": 1e-5 } },
+        "plates": [{ "id": "b", "origin": [0, 0], "size": [1, 1], "divisions": [2, 2], "thickness": 1, "material": "a",
+                     "plane": "stress" }],
+        "contacts": [
+            { "id": "floor", "edge": "b.bottom", "against": "ground", "friction": 0.5 },
+            { "id": "wall", "edge": "b.right", "against": "ground", "friction": 0.5, "gap": 1e-5 } ],
+        "loads": { "w": { "items": [{ "gravity": { "acceleration": [0, -weight] } }] },
+                   "p": { "items": [{ "point": { "at": "b.left", "force": [-pull, lift] } }] },
+                   "heat": { "items": [{ "temperature": { "change": 30, "on": ["b"] } }] } },
+        "stages": [{ "w": 1 }, { "w": 1, "p": 1, "heat": 0.5 }]
+    });
+    let scenario = load_text("plate", &text.to_string(), None).expect("a sound scenario");
+    let prepared = prepare(&scenario, &Quiet).expect("sound");
+    let history = follow(prepared.case(&scenario, &scenario.parameter_values())).expect("a history");
+    let stood = &history.stages[0];
+    for (i, pair) in stood.moments[0].pairs.iter().enumerate() {
+        close(pair.z_n, if i < 3 { 0.0 } else { 1e-5 }, 1e-5);
+        assert_eq!([pair.x_n, pair.x_t, pair.z_t], [0.0; 3]);
+    }
+    // The wall does not hold it under its weight alone: the floor carries all.
+    close(stood.end.pairs[..3].iter().map(|pair| pair.x_n).sum(), weight, weight);
+    let HistoryEnd::Limit { stage: 1, t, collapse } = &history.end else { panic!("{:?}", history.end) };
+    close(*t, 0.7 * weight / (lift + 0.5 * pull), 1.0);
+    assert!(collapse.verdict.is_some_and(stickslip::answer::record::Verdict::is_proof));
+}

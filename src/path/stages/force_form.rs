@@ -80,11 +80,7 @@ pub(super) fn follow<'a>(
         pairs: Vec::new(),
         last_slip: vec![0.0; laws.problem.system.pair_count()],
     };
-    let (factors, gaps) = (walk.place.factors.clone(), walk.place.gaps.clone());
-    if walk.stand_under(&factors, &gaps)?.is_some() {
-        let how = "in a ray: the gaps of the unloaded parts do not fit together".to_owned();
-        return Err(PathError::NoStart { name: "interference".to_owned(), at: 0.0, how });
-    }
+    walk.stand_unloaded();
     walk.begin(begin, targets.0)?;
     let (stages, end) = walk.stages(targets)?;
     Ok(recorded(&walk.place, stages, end))
@@ -94,6 +90,18 @@ impl ForcedWalk<'_> {
     /// The problem for slips that count from the committed ones.
     fn beyond_slips(&self, factors: &[f64], gaps: &[f64]) -> ContactProblem {
         behind_slips(self.problem_at(factors, gaps), &self.slips)
+    }
+
+    /// Stands without loads, as the parts were built: no displacements, no forces, every pair as far open as its gap, which is
+    /// none below 0. That is an answer whatever joints repeat one another, and needs no run, which may miss it among others.
+    fn stand_unloaded(&mut self) {
+        let problem = self.problem_at(&self.place.factors, &self.place.gaps);
+        let mut unknowns = DVector::zeros(problem.system.joint_count());
+        for (pair, gap) in self.place.gaps.iter().enumerate().filter(|(pair, _)| !problem.system.is_forced(*pair)) {
+            unknowns[pair] = *gap;
+        }
+        let state = JointState::at(&problem, unknowns, 0.0);
+        self.stand(&problem, &path_lcp(&problem, &problem.load), state);
     }
 
     /// Stands under these factors and gaps at the answer in increments from the committed slips; how the run ended where
