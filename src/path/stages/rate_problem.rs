@@ -315,6 +315,23 @@ fn primary_rows(laws: Laws<'_>, standing: &Standing) -> Vec<Row> {
     normals.chain(tangentials).collect()
 }
 
+/// The rows of the whole LCP, primary ones first, and the mirror of each of these.
+fn whole_rows(laws: Laws<'_>, primary: &[Row]) -> (Vec<RowId>, Vec<Option<Mirror>>) {
+    let mut rows: Vec<RowId> = primary.iter().map(|row| RowId { pair: row.pair, couple: row.couple }).collect();
+    let mut mirrors = vec![None; primary.len()];
+    for (i, row) in primary.iter().enumerate().filter(|(_, row)| row.mirrored) {
+        mirrors[i] = Some(Mirror {
+            whole: rows.len(),
+            normal: primary.iter().position(|normal| normal.pair == row.pair && normal.couple == RowKind::Normal),
+            friction: laws.friction(row.pair),
+            constant: 0.0,
+            covering: 2.0,
+        });
+        rows.push(RowId { pair: row.pair, couple: RowKind::MINUS });
+    }
+    (rows, mirrors)
+}
+
 /// Writes the LCP, dimensionless as that of eq. (8).
 ///
 /// What of q may be rounding is 0. Where a reversal finds a part in neutral equilibrium, such rows may be all there are: read
@@ -367,18 +384,7 @@ fn write(
         sign * sum(&rows[i], &|row| stiffness.entry(row, joint)) / stiffness_unit
     });
     let scales = joint_scales(system) / stiffness_unit.sqrt();
-    let mut rows: Vec<RowId> = primary.iter().map(meaning_of).collect();
-    let mut mirrors = vec![None; count];
-    for (i, row) in primary.iter().enumerate().filter(|(_, row)| row.mirrored) {
-        mirrors[i] = Some(Mirror {
-            whole: rows.len(),
-            normal: normal_of(row.pair),
-            friction: laws.friction(row.pair),
-            constant: 0.0,
-            covering: 2.0,
-        });
-        rows.push(RowId { pair: row.pair, couple: RowKind::MINUS });
-    }
+    let (rows, mirrors) = whole_rows(laws, &primary);
     let find = |pair: usize, couple: RowKind| rows.iter().position(|row| *row == RowId { pair, couple });
     let rows_of = |couple: RowKind| (0..system.pairs.len()).map(|pair| find(pair, couple)).collect();
     let normal_row = rows_of(RowKind::Normal);
