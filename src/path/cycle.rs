@@ -5,9 +5,10 @@
 
 use super::exact_cycle::{self, Repetition};
 use super::load_parameter::factors_at;
-use super::stages::{Begin, History, HistoryEnd, RESTS, StageResult, follow_until, limit_words};
+use super::stages::{Begin, History, HistoryEnd, RESTS, StageResult};
 use super::start::PathError;
 use super::static_shakedown::{Static, static_shakedown};
+use super::to_and_fro::ToAndFro;
 use crate::answer::record::{PairState, Ray, Verdict};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
@@ -267,13 +268,14 @@ pub(super) fn followed(
         count *= 2;
         judged(stages, true, (softest, same)).0 != Kind::Undecided
     };
-    let history = follow_until(case, begin, &targets, &mut decided)?;
+    let load = ToAndFro { name, ends };
+    let history = load.follow(case, begin, &targets, &mut decided)?;
     let (mut kind, turns) = judged(&history.stages, history.end == HistoryEnd::Complete, (softest, same));
     let is_proof = |collapse: &Ray| collapse.verdict.is_some_and(Verdict::is_proof);
     if kind == Kind::Undecided && matches!(&history.end, HistoryEnd::Limit { collapse, .. } if is_proof(collapse)) {
         kind = Kind::Collapses;
     }
-    let mut sentence = said(kind, &turns, &history, same, (name, ends));
+    let mut sentence = said(kind, &turns, &history, same, load);
     if history.stages.iter().any(|stage| !stage.rests.is_empty()) {
         sentence.push_str(&format!("; {RESTS}"));
     }
@@ -382,26 +384,7 @@ fn stays_open(stages: [&StageResult; 2], pair: usize) -> bool {
     moments.all(|pair| pair.z_n > 0.0 && pair.bound == 0.0)
 }
 
-/// Where a load that goes to and fro between these values ends on its way.
-fn collapse_sentence(history: &History, (name, [a, b]): (&str, [f64; 2])) -> String {
-    let HistoryEnd::Limit { stage, t, collapse } = &history.end else { return history.end_sentence() };
-    let met = limit_words(collapse);
-    let (from, to) = if stage % 2 == 1 { (a, b) } else { (b, a) };
-    match stage.checked_sub(1) {
-        None => format!(
-            "before the first cycle, on the way from the unloaded structure to {name} = {}: at {t:.6} of it {met}",
-            short(a)
-        ),
-        Some(half) => format!(
-            "in cycle {} on the way to {name} = {}: at {} {met}",
-            half / 2 + 1,
-            short(to),
-            short(from + t * (to - from))
-        ),
-    }
-}
-
-fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: (&str, [f64; 2])) -> String {
+fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: ToAndFro<'_>) -> String {
     let count = turns.len();
     match kind {
         Kind::ShakesDown => {
@@ -423,8 +406,8 @@ fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: (&str, [
             };
             format!("cycle {count} leaves slips behind{grown}; {}", recurrence(turns, same))
         }
-        Kind::Collapses => collapse_sentence(history, load),
-        Kind::Undecided if matches!(history.end, HistoryEnd::Limit { .. }) => collapse_sentence(history, load),
+        Kind::Collapses => load.end_sentence(history),
+        Kind::Undecided if matches!(history.end, HistoryEnd::Limit { .. }) => load.end_sentence(history),
         Kind::Undecided => {
             let difference = |index: usize| turns.get(index).and_then(|turn| turn.difference);
             let rate = match (difference(count.wrapping_sub(1)), difference(count.wrapping_sub(2))) {

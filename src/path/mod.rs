@@ -38,4 +38,5 @@ pub mod sweep;
 pub mod sweep_file;
 mod sweep_points;
 pub mod sweep_run;
+mod to_and_fro;
 pub mod way;

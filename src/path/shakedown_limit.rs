@@ -1,7 +1,7 @@
 //! The largest amplitude of a load that goes to and fro at which the structure still shakes down.
 
-use super::cycle::{Kind, MOST, followed};
-use super::stages::Begin;
+use super::cycle::{Cycle, Kind, MOST, followed};
+use super::stages::{Begin, HistoryEnd};
 use super::start::PathError;
 use super::static_shakedown::{Static, shakes_down_surely, static_limit};
 use crate::solve::case::Case;
@@ -20,8 +20,11 @@ const DOUBLINGS: usize = 40;
 pub struct ShakedownLimit {
     /// The value held at the other end.
     pub from: f64,
-    /// A value at which the structure shakes down.
-    pub shakes_down: f64,
+    /// The value looked at first, on whose side of it the others are.
+    pub towards: f64,
+    /// A value at which the structure shakes down; `None` where it does at none on this side, for it does not get away from
+    /// the first one.
+    pub shakes_down: Option<f64>,
     /// A value beyond, and what it comes to there; `None` where none was found.
     pub beyond: Option<Beyond>,
     /// Up to where the static theorem proves it from every start, and what it says there.
@@ -35,7 +38,7 @@ pub struct Beyond {
     pub value: f64,
     /// What it comes to there.
     pub kind: Kind,
-    /// Where the history there broke down: why.
+    /// Where the history there broke down, or gets to no value at all: why.
     pub why: Option<String>,
     /// Where it is undecided there: the least value looked at beyond that does not shake down, and what it comes to.
     pub decided: Option<(f64, Kind)>,
@@ -44,14 +47,16 @@ pub struct Beyond {
 /// What an amplitude comes to.
 enum Seen {
     Told(Kind),
+    /// Nor does any other: its history ends before it gets away from the first value, as this sentence says.
+    AtOnce(Kind, String),
     /// Its history breaks down, which is short of a proof of anything.
     Broken(PathError),
 }
 
 /// A history that breaks down is one amplitude that is not decided, and ends no search.
-fn seen(found: Result<Kind, PathError>) -> Result<Seen, PathError> {
+fn seen(found: Result<Seen, PathError>) -> Result<Seen, PathError> {
     match found {
-        Ok(kind) => Ok(Seen::Told(kind)),
+        Ok(seen) => Ok(seen),
         Err(error @ PathError::Breakdown { .. }) => Ok(Seen::Broken(error)),
         Err(error) => Err(error),
     }
@@ -64,15 +69,26 @@ fn seen(found: Result<Kind, PathError>) -> Result<Seen, PathError> {
 pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> Result<ShakedownLimit, PathError> {
     let system = case.prepared.system().ok_or(PathError::Plain("limit cycle"))?;
     let (narrow, most) = if system.is_in_space() { (NARROW_IN_SPACE, MOST_IN_SPACE) } else { (NARROW, MOST) };
-    let kind = |to: f64| match shakes_down_surely(case, name, [from, to])? {
-        true => Ok(Kind::ShakesDown),
-        false => followed(case, name, [from, to], most, &Begin::Unloaded).map(|found| found.kind),
+    // An amplitude that is rounding of the first one is none.
+    let least = f64::EPSILON * (first - from).abs();
+    let look = |to: f64| match shakes_down_surely(case, name, [from, to])? {
+        true => Ok(Seen::Told(Kind::ShakesDown)),
+        false => followed(case, name, [from, to], most, &Begin::Unloaded).map(|found| came_to(found, least)),
     };
     let progress = |to: f64, done: f64| case.watch.progress(&format!("{name} = {to}"), done);
-    let (mut good, beyond) = bracket(&|to| seen(kind(to)), [from, first], narrow, &progress)?;
+    let (good, beyond) = bracket(&|to| seen(look(to)), [from, first], (narrow, least), &progress)?;
+    let Some(mut good) = good else {
+        return Ok(ShakedownLimit {
+            from,
+            towards: first,
+            shakes_down: None,
+            beyond,
+            every_start: (None, Static::NotAsked),
+        });
+    };
     let Some(beyond) = beyond else {
         let every_start = static_limit(case, name, [from, good])?;
-        return Ok(ShakedownLimit { from, shakes_down: good, beyond: None, every_start });
+        return Ok(ShakedownLimit { from, towards: first, shakes_down: Some(good), beyond: None, every_start });
     };
     let every_start = match static_limit(case, name, [from, beyond.value]) {
         Err(PathError::Breakdown { .. }) => static_limit(case, name, [from, good])?,
@@ -83,16 +99,29 @@ pub fn shakedown_limit(case: Case<'_>, name: &str, [from, first]: [f64; 2]) -> R
     if let Some(proved) = every_start.0.filter(|proved| (good - proved).abs() <= near) {
         good = proved;
     }
-    Ok(ShakedownLimit { from, shakes_down: good, beyond: Some(beyond), every_start })
+    Ok(ShakedownLimit { from, towards: first, shakes_down: Some(good), beyond: Some(beyond), every_start })
 }
 
-/// The largest value found at which the structure shakes down, `from` where it does at none, and what lies beyond it.
+/// What a history says of its amplitude. One that ends on the way to the first value, or collapses within `least` of it on the
+/// first way from there, is that of every other end on this side as well.
+fn came_to(found: Cycle, least: f64) -> Seen {
+    let HistoryEnd::Limit { stage, t, .. } = &found.history.end else { return Seen::Told(found.kind) };
+    let gone = t * (found.ends[1] - found.ends[0]).abs();
+    match stage {
+        0 => Seen::AtOnce(found.kind, found.sentence),
+        1 if gone <= least && found.kind == Kind::Collapses => Seen::AtOnce(found.kind, found.sentence),
+        _ => Seen::Told(found.kind),
+    }
+}
+
+/// The largest value found at which the structure shakes down, `from` where it does at none that was looked at, `None` where it
+/// does not get away from there; and what lies beyond it.
 fn bracket(
     look: &dyn Fn(f64) -> Result<Seen, PathError>,
     [from, first]: [f64; 2],
-    narrow: f64,
+    (narrow, least): (f64, f64),
     progress: &dyn Fn(f64, f64),
-) -> Result<(f64, Option<Beyond>), PathError> {
+) -> Result<(Option<f64>, Option<Beyond>), PathError> {
     let (mut good, mut bad, mut decided) = (from, None, None);
     let mut to = first;
     for round in 0..DOUBLINGS {
@@ -108,14 +137,14 @@ fn bracket(
             }
         }
     }
-    let Some((mut beyond, mut what)) = bad else { return Ok((good, None)) };
-    // An amplitude that is rounding of the first one is none.
-    let least = f64::EPSILON * (first - from).abs();
+    let Some((mut beyond, mut what)) = bad else { return Ok((Some(good), None)) };
     loop {
-        if let Seen::Told(kind) = what
-            && kind != Kind::Undecided
-        {
-            decided = Some((beyond, kind));
+        match what {
+            Seen::AtOnce(kind, sentence) if good == from => {
+                return Ok((None, Some(Beyond { value: from, kind, why: Some(sentence), decided: None })));
+            }
+            Seen::Told(kind) | Seen::AtOnce(kind, _) if kind != Kind::Undecided => decided = Some((beyond, kind)),
+            _ => {}
         }
         if (beyond - good).abs() <= (narrow * (beyond - from).abs()).max(least) {
             break;
@@ -131,12 +160,12 @@ fn bracket(
         }
     }
     let (kind, why) = match what {
-        Seen::Told(kind) => (kind, None),
-        Seen::Broken(error) if good == from => return Err(error),
+        Seen::Told(kind) | Seen::AtOnce(kind, _) => (kind, None),
+        Seen::Broken(error) if good == from && decided.is_none() => return Err(error),
         Seen::Broken(error) => (Kind::Undecided, Some(error.to_string())),
     };
     let decided = decided.filter(|_| kind == Kind::Undecided);
-    Ok((good, Some(Beyond { value: beyond, kind, why, decided })))
+    Ok((Some(good), Some(Beyond { value: beyond, kind, why, decided })))
 }
 
 #[cfg(test)]
@@ -144,17 +173,17 @@ mod tests {
     use super::*;
 
     /// A structure that shakes down to 4, of which nothing can be said between the given values, and that collapses beyond.
-    fn found(broken: [f64; 2], ends: [f64; 2]) -> Result<(f64, Option<Beyond>), PathError> {
+    fn found(broken: [f64; 2], ends: [f64; 2]) -> Result<(Option<f64>, Option<Beyond>), PathError> {
         let look = |to: f64| {
             let at_fault = || PathError::Breakdown { name: "q".to_owned(), at: to, why: "legs in a row".to_owned() };
             let found = match to {
                 _ if (broken[0]..broken[1]).contains(&to) => Err(at_fault()),
-                _ if to <= 4.0 => Ok(Kind::ShakesDown),
-                _ => Ok(Kind::Collapses),
+                _ if to <= 4.0 => Ok(Seen::Told(Kind::ShakesDown)),
+                _ => Ok(Seen::Told(Kind::Collapses)),
             };
             seen(found)
         };
-        bracket(&look, ends, 1e-5, &|_, _| {})
+        bracket(&look, ends, (1e-5, 1e-15), &|_, _| {})
     }
 
     #[test]
@@ -163,7 +192,7 @@ mod tests {
         for (broken, kind) in [([4.001, 4.2], Kind::Collapses), ([4.0, 4.2], Kind::Undecided)] {
             for first in [1.0, 4.1, 5.0] {
                 let (good, beyond) = found(broken, [0.0, first]).expect("a bracket");
-                let beyond = beyond.expect("something beyond");
+                let (good, beyond) = (good.expect("some shake down"), beyond.expect("something beyond"));
                 assert!(good <= 4.0 && beyond.value >= 4.0 && beyond.value - good <= 1e-5 * beyond.value, "{good}");
                 assert_eq!((beyond.kind, beyond.why.is_some()), (kind, kind == Kind::Undecided), "from {first}");
                 assert!(beyond.decided.is_none_or(|(value, _)| value >= 4.2), "from {first}");
@@ -176,5 +205,31 @@ mod tests {
     #[test]
     fn one_that_breaks_down_everywhere_is_told() {
         assert!(matches!(found([0.0, 9.0], [0.0, 5.0]), Err(PathError::Breakdown { .. })));
+    }
+
+    /// A history that does not get away from 2, whether that is seen at once or after one that breaks down: no end shakes down.
+    /// Where all that is near breaks down, and only farther ones collapse, 2 is the largest found and beyond it is undecided.
+    #[test]
+    fn what_does_not_get_away_from_the_first_value_shakes_down_at_no_end() {
+        let at_once = || Ok(Seen::AtOnce(Kind::Collapses, "at 2".to_owned()));
+        for broken in [3.0, 5.0] {
+            let look = |to: f64| match to {
+                _ if to < broken || to > 5.0 => at_once(),
+                at => seen(Err(PathError::Breakdown { name: "q".to_owned(), at, why: "legs in a row".to_owned() })),
+            };
+            let (good, beyond) = bracket(&look, [2.0, 4.0], (1e-9, 1e-15), &|_, _| {}).expect("told");
+            let beyond = beyond.expect("what it comes to");
+            assert_eq!(
+                (good, beyond.value, beyond.kind, beyond.why.as_deref()),
+                (None, 2.0, Kind::Collapses, Some("at 2"))
+            );
+        }
+        let look = |to: f64| match to {
+            _ if to > 5.0 => Ok(Seen::Told(Kind::Collapses)),
+            at => seen(Err(PathError::Breakdown { name: "q".to_owned(), at, why: "legs in a row".to_owned() })),
+        };
+        let (good, beyond) = bracket(&look, [2.0, 6.0], (1e-9, 1e-15), &|_, _| {}).expect("told");
+        let beyond = beyond.expect("what lies beyond");
+        assert_eq!((good, beyond.kind, beyond.decided), (Some(2.0), Kind::Undecided, Some((6.0, Kind::Collapses))));
     }
 }

@@ -8,8 +8,9 @@
 use nalgebra::DVector;
 
 use super::load_parameter::factors_at;
-use super::stages::{Begin, HistoryEnd, Moment, follow_factors};
+use super::stages::{Begin, HistoryEnd, Moment};
 use super::start::PathError;
+use super::to_and_fro::ToAndFro;
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
@@ -226,7 +227,8 @@ fn second_way(case: Case<'_>, name: &str, [from, to]: [f64; 2]) -> Result<Result
         return Ok(Err(refusal));
     }
     let targets = [factors_at(case, name, from)?, factors_at(case, name, to)?];
-    let history = follow_factors(case, &Begin::Unloaded, &targets)?;
+    let load = ToAndFro { name, ends: [from, to] };
+    let history = load.follow(case, &Begin::Unloaded, &targets, &mut |_| false)?;
     let Some(stage) = history.stages.get(1) else { return Ok(Err(Static::Nothing)) };
     let places = stage.moments.iter().map(|moment| Place::of(&problem, moment)).collect();
     Ok(Ok(SecondWay { problem, places, complete: history.end == HistoryEnd::Complete }))

@@ -10,7 +10,7 @@ use crate::model::units::Units;
 use crate::path::cycle::{Cycle, Kind, Turn};
 use crate::path::cycle_starts::Starts;
 use crate::path::exact_cycle::{MOST_PAIRS as MOST_PROVED_PAIRS, MOST_SCHEMES, Repetition, SlipMap};
-use crate::path::shakedown_limit::ShakedownLimit;
+use crate::path::shakedown_limit::{Beyond, ShakedownLimit};
 use crate::path::static_shakedown::{MOST_PAIRS, Static};
 use crate::text::number::{measured, short, with_unit};
 
@@ -219,13 +219,17 @@ pub fn write_limit(
 ) -> io::Result<()> {
     let number = |value: f64| with_unit(&exact(value), unit);
     let from = number(found.from);
-    let Some(beyond) = &found.beyond else {
-        let text = format!("{name} from {from}: shakes down as far as was looked, to {}", number(found.shakes_down));
+    let (shakes_down, beyond) = match (found.shakes_down, &found.beyond) {
+        (Some(shakes_down), beyond) => (shakes_down, beyond),
+        (None, beyond) => return write_no_end(out, name, (&from, &number(found.towards)), beyond.as_ref(), style),
+    };
+    let Some(beyond) = beyond else {
+        let text = format!("{name} from {from}: shakes down as far as was looked, to {}", number(shakes_down));
         style.paragraph(out, Role::Good, &text)?;
         return write_every_start(out, found, &number, style);
     };
     let seen = if beyond.kind == Kind::Undecided { "found to shake" } else { "that shakes" };
-    let text = format!("{name} from {from}: the largest end {seen} down is {}", number(found.shakes_down));
+    let text = format!("{name} from {from}: the largest end {seen} down is {}", number(shakes_down));
     style.paragraph(out, Role::Accent, &text)?;
     let mut text = match (&beyond.why, beyond.kind) {
         (Some(why), _) => format!("at {} nothing is decided, for {why}", number(beyond.value)),
@@ -237,6 +241,24 @@ pub fn write_limit(
     }
     style.paragraph(out, Role::Plain, &text)?;
     write_every_start(out, found, &number, style)
+}
+
+/// No end shakes down: what the history comes to instead.
+fn write_no_end(
+    out: &mut dyn Write,
+    name: &str,
+    (from, towards): (&str, &str),
+    instead: Option<&Beyond>,
+    style: &Style,
+) -> io::Result<()> {
+    let is_proved = instead.is_some_and(|instead| instead.kind != Kind::Undecided);
+    let seen = if is_proved { "shakes down" } else { "was found to shake down" };
+    style.paragraph(out, Role::Bad, &format!("{name} from {from} towards {towards}: no end {seen}"))?;
+    match instead.and_then(|instead| instead.why.as_ref().map(|why| (instead.kind, why))) {
+        Some((Kind::Undecided, why)) => style.paragraph(out, Role::Plain, why),
+        Some((kind, why)) => style.paragraph(out, Role::Plain, &format!("it {} {why}", word(kind))),
+        None => Ok(()),
+    }
 }
 
 fn write_every_start(

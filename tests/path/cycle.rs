@@ -399,3 +399,37 @@ fn what_is_not_proved_is_no_collapse() {
         assert_eq!(found["collapse"].is_null(), kind == "undecided", "{found}");
     }
 }
+
+/// A block of weight W = 10 that rubs with f = 1/2 on a floor and is held against sinking only, and a push H along it: it slides
+/// away at f W = 5. Where the other load alone is 6, more than f W in any share of both, it slides away at once and does not get to
+/// the first value; where it is 5, it stands there, and no push on that side can be added. Against it, it goes to and fro up to 2 f W = 10 without a slip.
+#[test]
+fn where_nothing_gets_away_from_the_first_value_no_end_shakes_down() {
+    let mut session = lines::read(&scenario_text(json!({
+        "parameters": { "H": 6 },
+        "nodes": { "b": [0, 0] },
+        "springs": [{ "at": "b", "direction": [0, 1], "stiffness": 1000 }],
+        "contacts": [{ "id": "floor", "node": "b", "against": "ground", "normal": [0, 1], "friction": 0.5 }],
+        "loads": {
+            "w": { "items": [{ "point": { "at": "b", "force": [0, -10] } }] },
+            "h": { "factor": "H", "items": [{ "point": { "at": "b", "force": [1, 0] } }] },
+            "q": { "factor": 0, "items": [{ "point": { "at": "b", "force": [1, 0] } }] }
+        }
+    })));
+    for (h, place) in [("6", "before the first cycle"), ("5", "in cycle 1 on the way to q = 1: at 0 ")] {
+        report(&mut session, &format!("set H {h}")).unwrap();
+        let found = report(&mut session, "limit cycle q 0..1").unwrap();
+        assert!(found["shakes_down"].is_null() && found["kind_beyond"] == "collapses", "{found}");
+        near(&found["beyond"], 0.0, 0.0);
+        let why = found["why_beyond"].as_str().unwrap();
+        assert!(why.starts_with(place) && (h == "5" || why.contains("at 0.000000 of it")), "{why}");
+        let shown = text(&mut session, "limit cycle q 0..1");
+        assert!(
+            shown.starts_with("q from 0 towards 1: no end shakes down") && shown.contains("it collapses"),
+            "{shown}"
+        );
+        let cycle = report(&mut session, "cycle q 0..1").unwrap();
+        assert_eq!((&cycle["kind"], &cycle["sentence"]), (&"collapses".into(), &found["why_beyond"]));
+    }
+    near(&report(&mut session, "limit cycle q 0..-1").unwrap()["shakes_down"], -10.0, 1e-6);
+}

@@ -63,7 +63,7 @@ pub fn follow(case: Case<'_>) -> Result<History, PathError> {
             target
         })
         .collect();
-    followed(case, &Begin::Unloaded, &targets, &mut |_| false)
+    follow_until(case, &Begin::Unloaded, &targets, &mut |_| false)
 }
 
 /// Where a history begins.
@@ -79,26 +79,16 @@ pub enum Begin {
 /// Follows a structure through the given factors of all load cases.
 ///
 /// # Errors
-/// As [`follow`]; slips from which there is no answer.
+/// As [`follow`]; slips from which there is no answer; a stage that breaks down.
 pub fn follow_factors(case: Case<'_>, begin: &Begin, targets: &[Vec<f64>]) -> Result<History, PathError> {
-    follow_until(case, begin, targets, &mut |_| false)
+    follow_until(case, begin, targets, &mut |_| false)?.unbroken()
 }
 
-/// The same, up to the stage after which those that were followed are `enough`.
+/// The same, up to the stage after which those that were followed are `enough`, or to one that breaks down.
 ///
 /// # Errors
-/// As [`follow_factors`].
+/// As [`follow_factors`], but for the break-down of a stage after the first.
 pub(super) fn follow_until(
-    case: Case<'_>,
-    begin: &Begin,
-    targets: &[Vec<f64>],
-    enough: &mut dyn FnMut(&[StageResult]) -> bool,
-) -> Result<History, PathError> {
-    followed(case, begin, targets, enough)?.unbroken()
-}
-
-/// The same, up to a stage that breaks down.
-fn followed(
     case: Case<'_>,
     begin: &Begin,
     targets: &[Vec<f64>],

@@ -163,10 +163,10 @@ struct CycleReport<'a> {
 struct ShakedownReport<'a> {
     load: &'a str,
     from: f64,
-    shakes_down: f64,
+    shakes_down: Option<f64>,
     beyond: Option<f64>,
     kind_beyond: Option<Kind>,
-    /// Where the history broke down beyond: why.
+    /// Where the history broke down beyond, or gets to no other end at all: why.
     #[serde(skip_serializing_if = "Option::is_none")]
     why_beyond: Option<String>,
     /// Where it is undecided beyond: a value farther out that does not shake down, and what it comes to.
