@@ -408,21 +408,25 @@ fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: ToAndFro
         }
         Kind::Collapses => load.end_sentence(history),
         Kind::Undecided if matches!(history.end, HistoryEnd::Limit { .. }) => load.end_sentence(history),
-        Kind::Undecided => {
-            let difference = |index: usize| turns.get(index).and_then(|turn| turn.difference);
-            let rate = match (difference(count.wrapping_sub(1)), difference(count.wrapping_sub(2))) {
-                (Some(last), Some(before)) if last < before => {
-                    format!(
-                        "; it differs from the one before by {last:.1e} of the largest, {:.3} times less",
-                        last / before
-                    )
-                }
-                (Some(last), _) => format!("; it differs from the one before by {last:.1e} of the largest"),
-                _ => String::new(),
-            };
-            format!("no cycle of {count} repeats to {same:e}{rate}")
-        }
+        Kind::Undecided => unrepeated(turns, same),
     }
+}
+
+/// How far the last cycle is from repeating: what it differs by from the one before, and, where that falls, what is left to come.
+fn unrepeated(turns: &[Turn], same: f64) -> String {
+    let count = turns.len();
+    let difference = |back: usize| count.checked_sub(back).and_then(|index| turns[index].difference);
+    let Some(last) = difference(1) else { return format!("no cycle of {count} repeats to {same:e}") };
+    let differs = format!("cycle {count} differs from the one before by {last:.1e} of the largest force or gap");
+    let Some(before) = difference(2).filter(|before| last < *before) else {
+        return format!("no cycle of {count} is found to repeat to {same:e}; {differs}");
+    };
+    format!(
+        "no cycle of {count} is found to repeat to {same:e} together with all that would follow it; {differs}, {:.3} times the \
+         difference of the cycle before: if that goes on, all later cycles together move it by {:.1e} more",
+        last / before,
+        tail(last, before)
+    )
 }
 
 /// Why every further cycle is like the last.

@@ -433,3 +433,32 @@ fn where_nothing_gets_away_from_the_first_value_no_end_shakes_down() {
     }
     near(&report(&mut session, "limit cycle q 0..-1").unwrap()["shakes_down"], -10.0, 1e-6);
 }
+
+/// Two nodes on springs whose cycles come nearer in one ratio q: by d in the last of them, so that d q/(1 − q), the sum of the
+/// series, is left to come. That is what keeps it from being the same to 1e-12, and the sentence says so.
+#[test]
+fn what_is_left_to_come_is_told() {
+    let point = |at: &str, x: f64, y: f64| json!({ "point": { "at": at, "force": [x, y] } });
+    let rubs =
+        |id: &str, at: &str| json!({ "id": id, "node": at, "against": "ground", "normal": [0, 1], "friction": 0.6 });
+    let mut session = lines::read(&scenario_text(json!({
+        "nodes": { "m0": [0, 0], "m1": [1, 0] },
+        "springs": [
+            { "at": "m0", "direction": [0, 1], "stiffness": 1000 }, { "at": "m1", "direction": [0, 1], "stiffness": 100 },
+            { "between": ["m0", "m1"], "direction": [1, 0.5], "stiffness": 3000 },
+            { "at": "m0", "direction": [1, 0], "stiffness": 300 }
+        ],
+        "contacts": [rubs("c0", "m0"), rubs("c1", "m1")],
+        "loads": { "w": { "items": [point("m0", 0.0, -10.77), point("m1", 0.0, -8.969)] },
+                   "p0": { "items": [point("m1", 45.91, 2.498), point("m0", -1.317, -4.558)] } }
+    })));
+    let found = report(&mut session, "cycle p0 0..0.26").unwrap();
+    assert_eq!(found["kind"], "undecided");
+    let turns = found["cycles"].as_array().unwrap();
+    let [before, last] = [2, 1].map(|back| number(&turns[turns.len() - back]["difference"]));
+    let ratio = last / before;
+    let left = last * ratio / (1.0 - ratio);
+    assert!(last < 1e-12 && left > 1e-12, "{last} {left}");
+    let sentence = found["sentence"].as_str().unwrap();
+    assert!(sentence.contains(&format!("together move it by {left:.1e} more")), "{sentence}");
+}
