@@ -10,7 +10,6 @@ pub mod analysis;
 pub mod blocks;
 pub mod decompositions;
 pub mod doubled;
-pub mod integers;
 pub mod least_norm;
 pub mod products;
 pub mod supernodes;

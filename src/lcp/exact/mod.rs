@@ -10,7 +10,6 @@ pub mod farkas;
 pub mod lemke;
 pub mod modular;
 pub mod polyhedron;
-pub mod quotient;
 pub mod rational_solve;
 pub mod scalar;
 pub mod tableau;

@@ -15,7 +15,6 @@ use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
 use crate::lcp::exact::dyadic::WholeRows;
-use crate::lcp::exact::quotient::{Divisor, Factor};
 use crate::lcp::exact::rational_solve::clear_denominators;
 use crate::lcp::exact::scalar::BigInt;
 
@@ -253,9 +252,6 @@ impl Polyhedron {
         let width = self.nonbasic.len() + 1;
         let pivot = self.rows[row][column].clone();
         let own = std::mem::take(&mut self.rows[row]);
-        let divisor = Divisor::new(&self.denominator);
-        let [by, none] = [&pivot, &BigInt::zero()].map(Factor::new);
-        let own_factors: Vec<Factor> = own.iter().map(Factor::new).collect();
         for (i, other) in self.rows.iter_mut().enumerate() {
             if i == row {
                 continue;
@@ -263,16 +259,21 @@ impl Polyhedron {
             if other[column].is_zero() {
                 if pivot != self.denominator {
                     for entry in other.iter_mut().filter(|entry| !entry.is_zero()) {
-                        *entry = divisor.quotient([&Factor::new(entry), &by], [&none, &none]);
+                        *entry = &*entry * &pivot / &self.denominator;
                     }
                 }
                 continue;
             }
-            let factor = Factor::new(&other[column]);
+            let factor = other[column].clone();
             for j in (0..width).filter(|&j| j != column) {
-                if !(other[j].is_zero() && own[j].is_zero()) {
-                    other[j] = divisor.quotient([&Factor::new(&other[j]), &by], [&factor, &own_factors[j]]);
+                let mut sum = &other[j] * &pivot;
+                if !own[j].is_zero() {
+                    sum -= &factor * &own[j];
                 }
+                if !sum.is_zero() && !self.denominator.is_one() {
+                    sum /= &self.denominator;
+                }
+                other[j] = sum;
             }
         }
         self.rows[row] = own
