@@ -271,8 +271,8 @@ impl<'a> RateProblem<'a> {
     }
 }
 
-/// What is made of the first basis that is an answer and of which something is made: R alone does not make the rate problem one that Lemke's
-/// algorithm must solve. A basis whose rounding hides the load's rate decides nothing.
+/// What is made of the first basis that is an answer and of which something is made: R alone does not make the rate problem
+/// one that Lemke's algorithm must solve. A basis whose rounding hides the load's rate decides nothing.
 fn search<T>(lcp: &MirroredLcp, made: impl Fn(&[f64], &[usize]) -> Option<T>) -> Option<T> {
     let n = lcp.full_size;
     // Primary row of each whole row; the two rows of a couple never move together.

@@ -74,6 +74,18 @@ fn the_end_of_a_stage_is_no_jump() {
     }
 }
 
+/// The corners of these stones are given to ten digits: on three hinges the arch resists a motion by 1e-20 of its stiffness, and
+/// presses against it by 1e-10. Read as they stand, such numbers have rates of 1e10 only; the arch is in neutral equilibrium there.
+#[test]
+fn what_the_last_digits_of_a_file_resist_is_neutral() {
+    let history = followed(&Case::json(read(include_str!("arch_to_ten_digits.json"))));
+    assert_eq!(history.end, HistoryEnd::Complete);
+    for stage in &history.stages {
+        assert!(stage.moments.iter().all(|moment| !moment.jump));
+        assert!(stage.energy.expect("a structure").residual <= 1e-9, "{:?}", stage.energy);
+    }
+}
+
 /// All joints of a symmetric arch take up its weight at once: the ties of the first rates cycled under the lexicographic rule.
 /// In proportion to its weight nothing turns back, so that the way ends in the answer of the loads at once.
 #[test]
