@@ -50,6 +50,13 @@ pub fn add_response(target: &mut [f64], matrix: &[f64], x: &[f64]) {
     add_product(target, matrix, x, rows, 1, x.len());
 }
 
+/// The same where most entries of x are 0: their columns are not read.
+pub fn add_sparse_response(target: &mut [f64], matrix: &[f64], x: &[f64]) {
+    let columns = matrix.chunks_exact(target.len().max(1)).zip(x.iter().copied());
+    let columns: Vec<(&[f64], f64)> = columns.filter(|column| column.1 != 0.0).collect();
+    add_columns(target, &columns);
+}
+
 /// target += Σ factor · column over the given (column, factor).
 pub fn add_columns(target: &mut [f64], terms: &[(&[f64], f64)]) {
     // Wider registers, where the processor has them, change no byte.

@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 use super::outcome::Point;
 use super::problem::{Lcp, Scale, as_good_as_nothing};
 use crate::doubled::Real;
-use stickslip_numerics::products::add_columns;
+use stickslip_numerics::products::add_sparse_response;
 
 /// The mirror of a primary row.
 #[derive(Clone, Debug, PartialEq)]
@@ -150,9 +150,7 @@ impl MirroredLcp {
     pub fn times(&self, z: &[f64]) -> DVector<f64> {
         let mut response = DVector::zeros(self.size());
         // Most pairs stick, and their displacements are zero.
-        let columns = self.base.as_slice().chunks_exact(self.size().max(1)).zip(z.iter().copied());
-        let columns: Vec<_> = columns.filter(|column| column.1 != 0.0).collect();
-        add_columns(response.as_mut_slice(), &columns);
+        add_sparse_response(response.as_mut_slice(), self.base.as_slice(), z);
         self.couple(response.as_mut_slice());
         response
     }

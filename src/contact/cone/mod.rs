@@ -30,7 +30,7 @@ use super::law::{PairLaw, TangentialJoint};
 use super::sum::{HIDDEN, LAW_ROUNDING, Sum};
 use crate::lcp::problem::NOISE;
 use crate::watch::Watch;
-use stickslip_numerics::products::add_columns;
+use stickslip_numerics::products::{add_columns, add_sparse_response};
 
 /// Sweeps of projections before each search: the first search starts at the given point.
 pub const FROM_ANYWHERE: &[usize] = &[0, 50, 200, 800];
@@ -253,15 +253,13 @@ impl ConeProblem<'_> {
         let mut values: Vec<f64> = self.load.iter().copied().collect();
         let mut terms: Vec<f64> =
             self.load.iter().zip(self.load_terms).map(|(load, terms)| terms.max(load.abs())).collect();
-        let moved: Vec<(&[f64], f64)> =
-            z.iter().enumerate().filter(|(_, z)| **z != 0.0).map(|(k, z)| (self.column(k), *z)).collect();
-        add_columns(&mut values, &moved);
+        add_sparse_response(&mut values, self.stiffness.as_slice(), z.as_slice());
         if self.rounded {
             let scaled: f64 = z.iter().enumerate().map(|(k, z)| root(k) * z.abs()).sum();
             terms.iter_mut().enumerate().for_each(|(i, terms)| *terms += root(i) * scaled);
         } else {
-            for (column, z) in moved {
-                terms.iter_mut().zip(column).for_each(|(terms, entry)| *terms += (entry * z).abs());
+            for (k, z) in z.iter().enumerate().filter(|(_, z)| **z != 0.0) {
+                terms.iter_mut().zip(self.column(k)).for_each(|(terms, entry)| *terms += (entry * z).abs());
             }
         }
         values.into_iter().zip(terms).map(|(value, magnitude)| Sum { value, magnitude }).collect()

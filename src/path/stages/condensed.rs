@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::released::{OUTSIDE, Released, loose_motions};
+use super::released::{OUTSIDE, Released};
 use super::standing::{Laws, joint_scales};
 use crate::lcp::problem::NOISE;
 use stickslip_numerics::decompositions::svd;
@@ -47,13 +47,9 @@ impl Condensed {
         (released, moving): (&Released, &[usize]),
         load: &mut DVector<f64>,
     ) -> bool {
-        let mut all: Vec<usize> = released.joints.iter().chain(moving).copied().collect();
-        all.sort_unstable();
-        all.dedup();
-        let loose = loose_motions(&laws.problem.system, &all);
-        if loose.ncols() == released.loose.ncols() {
+        let Some((all, loose)) = released.loose_with(&laws.problem.system, moving.iter().copied()) else {
             return false;
-        }
+        };
         let part = |at: usize, one: usize| all.binary_search(&self.joints[at]).map_or(0.0, |row| loose[(row, one)]);
         let Some(svd) = svd(&DMatrix::from_fn(self.joints.len(), loose.ncols(), part)) else { return false };
         let moves: Vec<usize> = (0..svd.sigma.len()).filter(|&k| svd.sigma[k] > OUTSIDE).collect();

@@ -7,7 +7,6 @@
 use nalgebra::DVector;
 
 use super::rate_problem::{RateProblem, Rates, moved, terms};
-use super::released::loose_motions;
 use super::standing::Standing;
 use crate::contact::sum::{HIDDEN, LAW_ROUNDING};
 use crate::lcp::problem::NOISE;
@@ -17,14 +16,10 @@ impl RateProblem<'_> {
     /// without it.
     pub(super) fn unresisted(&self, standing: &Standing, rates: &Rates) -> Option<DVector<f64>> {
         let (laws, released) = (self.laws, &self.released);
-        let mut joints = released.joints.clone();
-        joints.extend(rates.moving.iter().map(|row| moved(laws, *row).0));
-        joints.sort_unstable();
-        joints.dedup();
-        let loose = loose_motions(&laws.problem.system, &joints);
-        if loose.ncols() == released.loose.ncols() {
+        let moving = rates.moving.iter().map(|row| moved(laws, *row).0);
+        let Some((joints, loose)) = released.loose_with(&laws.problem.system, moving) else {
             return self.beyond_measure(rates).then(|| rates.z.clone());
-        }
+        };
         let mut motion = DVector::zeros(rates.z.len());
         let part = DVector::from_fn(joints.len(), |at, _| rates.z[joints[at]]);
         let along = &loose * loose.tr_mul(&part);

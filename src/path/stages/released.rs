@@ -15,7 +15,7 @@ pub(super) struct Released {
     pub(super) joints: Vec<usize>,
     factor: Cholesky<f64, Dyn>,
     /// Motions of the released joints alone that cost no energy, orthonormal; |F| × r.
-    pub(super) loose: DMatrix<f64>,
+    loose: DMatrix<f64>,
 }
 
 impl Released {
@@ -32,6 +32,20 @@ impl Released {
         }
         let factor = Cholesky::new(matrix)?;
         Some(Released { joints, factor, loose })
+    }
+
+    /// The released joints and others, in increasing order, and the motions of all these alone that cost no energy; `None`
+    /// where the others add none to those of the released ones.
+    pub(super) fn loose_with(
+        &self,
+        system: &ContactSystem,
+        others: impl Iterator<Item = usize>,
+    ) -> Option<(Vec<usize>, DMatrix<f64>)> {
+        let mut joints: Vec<usize> = self.joints.iter().copied().chain(others).collect();
+        joints.sort_unstable();
+        joints.dedup();
+        let loose = loose_motions(system, &joints);
+        (loose.ncols() > self.loose.ncols()).then_some((joints, loose))
     }
 
     /// A loose motion on which the forces `right` of the released joints do work; `None` where they do none.

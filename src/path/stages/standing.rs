@@ -6,7 +6,7 @@ use crate::answer::record::{PairState, State};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
 use crate::lcp::problem::NOISE;
-use stickslip_numerics::products::add_columns;
+use stickslip_numerics::products::add_sparse_response;
 
 /// A direction of slip; x^σ = bound + σ x_τ is the reserve that it uses up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,11 +91,9 @@ impl Laws<'_> {
 
     /// λ = R z + load, afresh.
     pub(super) fn force(&self, z: &DVector<f64>, load: &DVector<f64>) -> DVector<f64> {
-        let columns = self.problem.system.stiffness.as_slice().chunks_exact(z.len().max(1));
-        // Most joints of a large structure stand still.
-        let moving: Vec<(&[f64], f64)> = columns.zip(z.iter().copied()).filter(|(_, z)| *z != 0.0).collect();
         let mut force = DVector::zeros(z.len());
-        add_columns(force.as_mut_slice(), &moving);
+        // Most joints of a large structure stand still.
+        add_sparse_response(force.as_mut_slice(), self.problem.system.stiffness.as_slice(), z.as_slice());
         force + load
     }
 
@@ -160,7 +158,8 @@ impl Standing {
             length_sizes: DVector::zeros(joints),
             scale: joint_scales(&laws.problem.system),
         };
-        standing.classify(laws, &DVector::zeros(joints), &[]);
+        let sizes = laws.force_sizes(&standing.z, &DVector::zeros(joints));
+        standing.classify(laws, &sizes, &[]);
         standing
     }
 
@@ -183,12 +182,11 @@ impl Standing {
         laws.friction(pair) * x_n + laws.constant(pair)
     }
 
-    /// Reads from the values which limits every pair stands at. `load_sizes`: Σ |terms| of the load; `reached`:
+    /// Reads from the values which limits every pair stands at. `sizes`: Σ |terms| of the forces; `reached`:
     /// limits that are known to be reached, whatever rounding makes of their values.
-    pub(super) fn classify(&mut self, laws: Laws<'_>, load_sizes: &DVector<f64>, reached: &[Reached]) {
+    pub(super) fn classify(&mut self, laws: Laws<'_>, sizes: &DVector<f64>, reached: &[Reached]) {
         let system = &*laws.problem.system;
-        let sizes = laws.force_sizes(&self.z, load_sizes);
-        self.force_sizes.zip_apply(&sizes, |most, now| *most = f64::max(*most, now));
+        self.force_sizes.zip_apply(sizes, |most, now| *most = f64::max(*most, now));
         let lengths = laws.length_sizes(&self.scale, &self.z);
         self.length_sizes.zip_apply(&lengths, |most, now| *most = f64::max(*most, now));
         for (i, pair) in system.pairs.iter().enumerate() {

@@ -90,7 +90,6 @@ impl<'a> Walk<'a> {
         reached: &mut Vec<Reached>,
         way: &mut Way,
     ) -> Result<Stretch, PathError> {
-        let system = &*self.place.laws.problem.system;
         let Some(mut problem) = RateProblem::new(self.place.laws, &self.standing, (rate, sizes)) else {
             return Err(breakdown(t, "the stiffness of the open pairs is not positive definite"));
         };
@@ -124,7 +123,7 @@ impl<'a> Walk<'a> {
                 return Err(breakdown(t, "the rates lead back to the limits from which they start"));
             }
             reached.append(&mut now);
-            self.standing.classify(self.place.laws, &course.sizes_at(system, t), reached);
+            self.classify(course, t, reached);
             return Ok(Stretch::Event(to));
         }
         self.advance(course, &problem, &rates, (t, to), &now)?;
@@ -178,7 +177,7 @@ impl<'a> Walk<'a> {
         self.standing.force = force;
         self.place.factors = course.factors_at(to);
         self.place.gaps = course.gaps_at(to);
-        self.standing.classify(laws, &course.sizes_at(system, to), reached);
+        self.standing.classify(laws, &sizes, reached);
         Ok(())
     }
 
@@ -225,7 +224,14 @@ impl<'a> Walk<'a> {
         self.place.factors = course.factors_at(t);
         self.place.gaps = course.gaps_at(t);
         self.place.way = way;
-        self.standing.classify(self.place.laws, &course.sizes_at(system, t), &[]);
+        self.classify(course, t, &[]);
+    }
+
+    /// See [`Standing::classify`].
+    fn classify(&mut self, course: &Course, t: f64, reached: &[Reached]) {
+        let laws = self.place.laws;
+        let sizes = laws.force_sizes(&self.standing.z, &course.sizes_at(&laws.problem.system, t));
+        self.standing.classify(laws, &sizes, reached);
     }
 }
 
