@@ -42,18 +42,18 @@ pub(super) fn explanation(collapse: &Ray) -> &'static str {
         }
         _ => {
             "The loads of this stage could not be followed further: the rate problem has no answer that was found, and no \
-             state just beyond was found to jump to. That the loads cannot be carried is not proved."
+             state just beyond was found that leads on. That the loads cannot be carried is not proved."
         }
     }
 }
 
 impl Walk<'_> {
-    /// What comes where the rate problem ends in a ray at place t: a jump, and the place it leads to, or the collapse.
+    /// What comes where the rate problem ends in a ray at place t: a jump, if it may, and the place it leads to, or the collapse.
     pub(super) fn beyond(
         &mut self,
         course: &Course,
         t: f64,
-        (motion, p): (&DVector<f64>, f64),
+        (motion, p, may_jump): (&DVector<f64>, f64, bool),
         way: &mut Way,
     ) -> Result<Result<f64, Ray>, PathError> {
         let mut collapse = self.collapse(course, t, motion, p)?;
@@ -61,7 +61,7 @@ impl Walk<'_> {
             collapse.explanation = explanation(&collapse).to_owned();
             return Ok(Err(collapse));
         }
-        if let Some(to) = self.jump(course, t, way)? {
+        if may_jump && let Some(to) = self.jump(course, t, way)? {
             return Ok(Ok(to));
         }
         let at = t + CERTIFIED_AT;

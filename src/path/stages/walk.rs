@@ -28,7 +28,7 @@ use crate::watch::Watch;
 
 /// No stage has more events than this.
 const EVENTS: usize = 100_000;
-/// This many jumps one after the other, with no way between them, lead nowhere.
+/// This many jumps one after the other, with no way between them, lead nowhere: the place is as good as a limit.
 const JUMPS: usize = 20;
 
 /// The state from which the history goes on.
@@ -286,8 +286,6 @@ impl<'a> Follower<'a> for Walk<'a> {
         let (rate, sizes) = (course.rate(system), course.rate_sizes(system));
         let mut way = Way::from(self.moment(0.0, false));
         let (mut t, mut reached, mut events, mut jumps) = (0.0, Vec::new(), 0, 0);
-        // Where the jumps that follow one another began.
-        let mut began = 0.0;
         if rate.amax() == 0.0 {
             self.place.factors = course.factors_at(1.0);
             way.moments.push(self.moment(1.0, false));
@@ -308,16 +306,8 @@ impl<'a> Follower<'a> for Walk<'a> {
                     jumps = if to > t { 0 } else { jumps };
                     to
                 }
-                Stretch::End { .. } if jumps == JUMPS => {
-                    let why =
-                        format!("no rates lead on from here, nor from any of {JUMPS} states found a little further on");
-                    return Err(breakdown(began, &why));
-                }
-                Stretch::End { motion, p } => match self.beyond(course, t, (&motion, p), &mut way)? {
+                Stretch::End { motion, p } => match self.beyond(course, t, (&motion, p, jumps < JUMPS), &mut way)? {
                     Ok(to) => {
-                        if jumps == 0 {
-                            began = t;
-                        }
                         jumps += 1;
                         to
                     }
