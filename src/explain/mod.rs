@@ -1,5 +1,6 @@
 //! Why: pivots in sentences, rays by class, in the words of the structure.
 
+pub mod all_schemes;
 pub mod balance;
 pub mod certificate;
 mod exact_certificate;

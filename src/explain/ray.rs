@@ -1,8 +1,6 @@
 //! Rays: class by the signs of method §4, verdict, the motion in words and the work of the loads on it. Never more than
 //! was proved.
 
-use std::ops::ControlFlow;
-
 use nalgebra::DVector;
 
 use super::balance::is_balanced;
@@ -16,8 +14,6 @@ use super::remedy::digits;
 use super::sliding::sliding;
 use crate::answer::record::{Direction, PairDirection, Ray, RayClass, Verdict};
 use crate::contact::problem::ContactProblem;
-use crate::contact::schemes::enumerate::Enumeration;
-use crate::contact::schemes::near::enumerate_to_rounding;
 use crate::contact::system::{ContactSystem, JointLoad};
 use crate::contact::written::ContactLcp;
 use crate::fem::MainSystem;
@@ -26,19 +22,14 @@ use crate::lcp::problem::NOISE;
 use crate::model::rules::Covering;
 use crate::model::structure::Structure;
 use crate::text::words::{list, short};
-use crate::watch::Watch;
 
 /// z̄ whose part outside the kernel is below this share of it costs no energy.
 const NO_ENERGY: f64 = 1e-7;
 /// A power below this multiple of the terms it sums is rounding.
 const NO_POWER: f64 = NOISE;
-/// Most pairs whose working schemes are all tried to accompany a solution.
-const MOST_PAIRS: usize = 10;
 /// What a collapse means whose motion is that of its proof.
 const OF_PROOF: &str = "The run ended in slips that cancel one another and move nothing; the motion is that of the proof, without \
                         what opens for its sake only. It costs no energy and the loads do work on it.";
-/// Steps times the cube of the number of joints after which that is given up.
-const MOST_STEPS: u64 = 100_000_000;
 
 /// Work of a load case on the mode, per unit of its largest entry.
 #[derive(Clone, Debug, PartialEq)]
@@ -200,23 +191,6 @@ pub fn report(problem: &ContactProblem, built: Built<'_>, contact: &ContactLcp, 
     certify_ray(&mut report, problem, built);
     explain(&mut report, problem, built);
     report.record(&problem.system, Covering::default())
-}
-
-/// Goes through all working schemes, of rounded data within their rounding; `None` where that takes too many steps or the
-/// search was stopped.
-pub fn all_answers(problem: &ContactProblem, watch: &dyn Watch) -> Option<Enumeration> {
-    let system = &*problem.system;
-    let pairs = system.pairs.len();
-    if pairs > MOST_PAIRS || system.force_form.is_some() || system.is_in_space() {
-        return None;
-    }
-    let most = MOST_STEPS / (2 * pairs as u64).pow(3).max(1);
-    let mut steps = 0;
-    let found = enumerate_to_rounding(problem, &mut |_| {
-        steps += 1;
-        if steps > most || watch.stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    found.complete.then_some(found)
 }
 
 /// The motion of the collapse that a certificate proves, largest entry 1: pairs that slip stay closed.

@@ -12,7 +12,8 @@ use crate::contact::lcp::contact_lcp;
 use crate::contact::problem::ContactProblem;
 use crate::contact::refine::refined;
 use crate::contact::rows::RowKind;
-use crate::explain::ray::{self, all_answers};
+use crate::explain::all_schemes::{all_answers, answers_as_stored};
+use crate::explain::ray;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::variable::Variable;
 use crate::model::rules::Covering;
@@ -174,7 +175,7 @@ impl Walk<'_> {
         problem: &ContactProblem,
         committed: &DVector<f64>,
     ) -> Option<(JointState, Vec<PairState>)> {
-        let found = all_answers(problem, self.place.watch).filter(|found| !found.within_rounding)?;
+        let found = answers_as_stored(problem, self.place.watch)?;
         let contact = contact_lcp(problem, Covering::Cohesive).ok()?;
         let motion = |state: &JointState| (&state.z + committed - &self.standing.z).amax();
         let states = found.answers.into_iter().map(|answer| JointState::at(problem, answer.state.z, 0.0));
