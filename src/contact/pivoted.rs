@@ -12,13 +12,14 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::doubled::{dot, sum_of_products};
+use stickslip_numerics::blocks::{MatMut, MatRef, solve_lower, solve_upper};
 use stickslip_numerics::doubled::add_response;
 use stickslip_numerics::products::{add_columns, halved_sums, roundings, subtract_square};
 
 /// A row of A z below this share of its terms is zero by the digits of A.
 pub const DIGITS: f64 = 64.0 * f64::EPSILON;
 /// A remaining pivot (of a diagonal of 1) up to this is examined: it may be zero.
-const NEARLY: f64 = 1e-10;
+pub const NEARLY: f64 = 1e-10;
 /// Columns that are subtracted from the rest at once.
 const PANEL: usize = 64;
 
@@ -99,17 +100,37 @@ impl PivotedCholesky {
         &self.order[..self.rank]
     }
 
+    /// The last pivot, of a diagonal of 1: all others are as large. ∞ without any.
+    pub fn least_pivot(&self) -> f64 {
+        self.rank.checked_sub(1).map_or(f64::INFINITY, |last| self.l[(last, last)].powi(2))
+    }
+
     /// x with A x = b in the independent rows, 0 in the others.
     pub fn solve(&self, b: &DVector<f64>) -> DVector<f64> {
-        let (rank, l) = (self.rank, self.l.view((0, 0), (self.rank, self.rank)));
-        let mut y = DVector::from_fn(rank, |i, _| b[self.order[i]] / self.scale[self.order[i]]);
-        l.solve_lower_triangular_mut(&mut y);
-        l.tr_solve_lower_triangular_mut(&mut y);
-        let mut x = DVector::zeros(b.len());
-        for (i, y) in y.iter().enumerate() {
-            x[self.order[i]] = y / self.scale[self.order[i]];
-        }
+        let mut x = b.clone();
+        self.solve_columns(x.as_mut_slice());
         x
+    }
+
+    /// The same of some right sides, one after the other, in their place.
+    fn solve_columns(&self, columns: &mut [f64]) {
+        let (n, rank) = (self.order.len(), self.rank);
+        if n == 0 || columns.is_empty() {
+            return;
+        }
+        let independent = || self.independent().iter().map(|&row| (row, self.scale[row]));
+        let mut y: Vec<f64> =
+            columns.chunks(n).flat_map(|b| independent().map(|(row, scale)| b[row] / scale)).collect();
+        if rank > 0 {
+            let l = MatRef::from_column_major_slice(self.l.as_slice(), n, n).get(..rank, ..rank);
+            let count = columns.len() / n;
+            solve_lower(l, MatMut::from_column_major_slice_mut(&mut y, rank, count));
+            solve_upper(l.transpose(), MatMut::from_column_major_slice_mut(&mut y, rank, count));
+        }
+        columns.fill(0.0);
+        for (x, y) in columns.chunks_mut(n).zip(y.chunks(rank.max(1))) {
+            independent().zip(y).for_each(|((row, scale), y)| x[row] = y / scale);
+        }
     }
 
     /// The null space of A, the matrix that was factored.
@@ -120,8 +141,7 @@ impl PivotedCholesky {
         if rest.is_empty() {
             return null;
         }
-        let (candidates, are_null): (Vec<DVector<f64>>, Vec<bool>) =
-            rest.iter().map(|&k| self.candidate(matrix, k)).unzip();
+        let (candidates, are_null) = self.candidates(matrix);
         let size = rest.len();
         let sigma = DMatrix::from_fn(size, size, |i, j| {
             let row = rest[i];
@@ -141,38 +161,71 @@ impl PivotedCholesky {
         null
     }
 
-    /// The vector with 1 / scale at `k`, 0 at the other dependent rows, that A takes to zero in all independent rows;
-    /// and whether it is null. Refined until it is, twice at most.
-    fn candidate(&self, matrix: &DMatrix<f64>, k: usize) -> (DVector<f64>, bool) {
-        let own = 1.0 / self.scale[k];
-        let mut z = DVector::zeros(self.order.len());
-        z[k] = own;
-        // A z, exact: `own` is a power of two.
-        let mut residual = matrix.column(k) * own;
-        z -= self.solve(&residual);
+    /// For each dependent row k the vector with 1 / scale there, 0 at the other dependent rows, that A takes to zero in all
+    /// independent rows; and which of them are null. Refined until they are, twice at most, all of them in one pass through L.
+    fn candidates(&self, matrix: &DMatrix<f64>) -> (Vec<DVector<f64>>, Vec<bool>) {
+        let n = self.order.len();
+        let own = self.order[self.rank..].iter().map(|&k| (k, 1.0 / self.scale[k]));
+        // A z of the rows k, exact: scales are powers of two.
+        let mut residual: Vec<f64> = Vec::with_capacity(n * (n - self.rank));
+        own.clone().for_each(|(k, own)| residual.extend(matrix.column(k).iter().map(|entry| entry * own)));
+        self.solve_columns(&mut residual);
+        let mut found: Vec<DVector<f64>> = (own.zip(residual.chunks(n)))
+            .map(|((k, own), step)| DVector::from_fn(n, |i, _| if i == k { own } else { -step[i] }))
+            .collect();
+        let mut are_null = vec![false; found.len()];
         for _ in 0..2 {
-            let mut rest = DVector::zeros(z.len());
-            residual.fill(0.0);
-            add_response(residual.as_mut_slice(), rest.as_mut_slice(), matrix.as_slice(), z.as_slice());
-            residual += rest;
-            z -= self.solve(&residual);
-            // An entry that should be 0 holds rounding, and may be the only term of some row.
-            let size = |i: usize| z[i].abs() * self.scale[i];
-            let largest = (0..z.len()).map(size).fold(0.0, f64::max);
-            let simple = DVector::from_fn(z.len(), |i, _| if size(i) <= f64::EPSILON * largest { 0.0 } else { z[i] });
-            if self.is_null(matrix, &simple) {
-                return (simple, true);
+            let open: Vec<usize> = (0..found.len()).filter(|&i| !are_null[i]).collect();
+            let mut residual = vec![0.0; n * open.len()];
+            for (&one, residual) in open.iter().zip(residual.chunks_mut(n)) {
+                let mut rest = vec![0.0; n];
+                add_response(residual, &mut rest, matrix.as_slice(), found[one].as_slice());
+                residual.iter_mut().zip(rest).for_each(|(residual, rest)| *residual += rest);
             }
-            if simple != z && self.is_null(matrix, &z) {
-                return (z, true);
+            self.solve_columns(&mut residual);
+            for (&one, step) in open.iter().zip(residual.chunks(n)) {
+                found[one].iter_mut().zip(step).for_each(|(z, step)| *z -= step);
             }
+            self.settle(matrix, &mut found, &mut are_null);
         }
-        (z, false)
+        (found, are_null)
     }
 
-    /// [`is_null`] of a vector that solves the independent rows: the others tell first that it is not.
-    fn is_null(&self, matrix: &DMatrix<f64>, z: &DVector<f64>) -> bool {
-        self.order[self.rank..].iter().all(|&row| is_null_in(matrix, z, row)) && is_null(matrix, z)
+    /// Tells of candidates whether they are null; without those of their entries that are rounding if they can be: an entry that
+    /// should be 0 may be the only term of some row.
+    fn settle(&self, matrix: &DMatrix<f64>, found: &mut [DVector<f64>], are_null: &mut [bool]) {
+        let simple: Vec<(usize, DVector<f64>)> = (0..found.len())
+            .filter(|&one| !are_null[one])
+            .map(|one| {
+                let z = &found[one];
+                let size = |i: usize| z[i].abs() * self.scale[i];
+                let least = f64::EPSILON * (0..z.len()).map(size).fold(0.0, f64::max);
+                (one, DVector::from_fn(z.len(), |i, _| if size(i) <= least { 0.0 } else { z[i] }))
+            })
+            .collect();
+        let are_simple = self.null_among(matrix, simple.iter().map(|(_, z)| z));
+        for ((one, z), is_null) in simple.into_iter().zip(are_simple) {
+            are_null[one] = is_null || z != found[one] && self.null_among(matrix, [&found[one]].into_iter())[0];
+            if is_null {
+                found[one] = z;
+            }
+        }
+    }
+
+    /// Which of some vectors that solve the independent rows are [null](is_null), in one pass through A; the other rows tell first
+    /// that they are not.
+    fn null_among<'a>(
+        &self,
+        matrix: &DMatrix<f64>,
+        vectors: impl Iterator<Item = &'a DVector<f64>> + Clone,
+    ) -> Vec<bool> {
+        let mut are_null: Vec<bool> = vectors.clone().map(|_| true).collect();
+        for row in self.order[self.rank..].iter().copied().chain(0..matrix.ncols()) {
+            for (z, is_null) in vectors.clone().zip(&mut are_null) {
+                *is_null = *is_null && is_null_in(matrix, z, row);
+            }
+        }
+        are_null
     }
 }
 

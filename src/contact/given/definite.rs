@@ -39,6 +39,12 @@ pub(super) fn set_entries(matrix: &mut DMatrix<f64>, entries: &[(usize, usize, f
     }
 }
 
+/// Frobenius norm of entries below the diagonal and their twins, of a matrix scaled to unit diagonal.
+pub(super) fn size(entries: &[(usize, usize, f64)], scale: &[f64]) -> f64 {
+    let squares = entries.iter().map(|&(i, j, entry)| (entry / scale[i] / scale[j]).powi(2));
+    (2.0 * squares.sum::<f64>()).sqrt()
+}
+
 /// Half a unit of the last digit of the longest entry, relative: how far each entry may be from what was printed.
 fn rounding(matrix: &DMatrix<f64>) -> f64 {
     match matrix.iter().map(|entry| digits(*entry)).max() {

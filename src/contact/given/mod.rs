@@ -9,12 +9,12 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use self::definite::{judge_entries, set_entries, take_rounding};
+use self::definite::{judge_entries, set_entries, size, take_rounding};
 pub use self::error::GivenError;
 use self::rows::{Rows, cleaned, joint_name, joints_in_words, pairs};
 use self::singular::{repeated_in_space, singular_compliance};
 use super::file_data::FileData;
-use super::pivoted::{DIGITS, NullSpace, PivotedCholesky, is_null, orthonormal, scales};
+use super::pivoted::{DIGITS, NEARLY, NullSpace, PivotedCholesky, is_null, orthonormal, scales};
 use super::system::{ContactSystem, JointLoad};
 use crate::lcp::problem::NOISE;
 use crate::model::scenario::{GivenContactSystem, GivenLoad, GivenMatrix};
@@ -22,6 +22,9 @@ use stickslip_numerics::decompositions::smallest_eigenvalue;
 
 /// An eigenvalue below −this makes a matrix unusable, after scaling to unit diagonal.
 const NEGATIVE: f64 = 1e-9;
+/// A pivot this many times what was taken out of a matrix is there with it, too: elimination magnifies what was taken by the
+/// squares of the motions that it leads to, which are of order one after scaling.
+const FAR: f64 = 1e4;
 
 /// Rows and columns of a matrix that are looked at together.
 const SQUARE: usize = 64;
@@ -65,7 +68,7 @@ fn symmetric(rows: &[Vec<f64>]) -> DMatrix<f64> {
 }
 
 /// The null space of a matrix, refused where it is indefinite.
-fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<NullSpace, GivenError> {
+fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<(NullSpace, PivotedCholesky), GivenError> {
     let factor = PivotedCholesky::new(matrix);
     let null = factor.null_space(matrix);
     if null.least < -NEGATIVE {
@@ -74,7 +77,7 @@ fn null_space(key: &'static str, matrix: &DMatrix<f64>) -> Result<NullSpace, Giv
         // What the null space shows bounds it from above.
         return Err(GivenError::Indefinite { key, smallest: smallest_eigenvalue(&scaled).unwrap_or(null.least) });
     }
-    Ok(null)
+    Ok((null, factor))
 }
 
 /// A stiffness matrix with its null space. Where it is singular, or nearly so, entries that may be rounding are taken as that
@@ -83,23 +86,32 @@ fn with_null_space(
     mut matrix: DMatrix<f64>,
     remarks: &mut Vec<String>,
 ) -> Result<(DMatrix<f64>, NullSpace), GivenError> {
-    let mut null = null_space("stiffness", &matrix)?;
-    let is_regular = null.exact.is_empty() && null.near.is_empty();
-    let taken = if is_regular { Vec::new() } else { take_rounding(&mut matrix) };
-    if !taken.is_empty() {
-        let of_rest = null_space("stiffness", &matrix)?;
-        if of_rest.exact.len() >= null.exact.len() && of_rest.near.len() <= null.near.len() {
-            let entries = match taken.len() {
-                1 => "1 entry of the contact stiffness matrix is".to_owned(),
-                count => format!("{count} entries of the contact stiffness matrix are"),
-            };
-            remarks.push(format!("{entries} what rounding leaves of zero: taken as 0, no free motion is held by that"));
-            null = of_rest;
-        } else {
-            set_entries(&mut matrix, &taken, |entry| entry);
-        }
+    let taken = take_rounding(&mut matrix);
+    let (of_rest, factor) = null_space("stiffness", &matrix)?;
+    if taken.is_empty() {
+        return Ok((matrix, of_rest));
     }
-    Ok((matrix, null))
+    // Both have the same motions where the rest resists all others by far more than what was taken can: then the whole needs no
+    // look of its own.
+    let is_clear = of_rest.near.is_empty() && factor.least_pivot() > FAR * size(&taken, &factor.scale).max(NEARLY);
+    if !is_clear {
+        set_entries(&mut matrix, &taken, |entry| entry);
+        let (null, _) = null_space("stiffness", &matrix)?;
+        let is_regular = null.exact.is_empty() && null.near.is_empty();
+        if is_regular || of_rest.exact.len() < null.exact.len() || of_rest.near.len() > null.near.len() {
+            return Ok((matrix, null));
+        }
+        set_entries(&mut matrix, &taken, |_| 0.0);
+    } else if of_rest.exact.is_empty() {
+        set_entries(&mut matrix, &taken, |entry| entry);
+        return Ok((matrix, of_rest));
+    }
+    let entries = match taken.len() {
+        1 => "1 entry of the contact stiffness matrix is".to_owned(),
+        count => format!("{count} entries of the contact stiffness matrix are"),
+    };
+    remarks.push(format!("{entries} what rounding leaves of zero: taken as 0, no free motion is held by that"));
+    Ok((matrix, of_rest))
 }
 
 fn from_stiffness(
