@@ -140,3 +140,31 @@ fn a_jump_is_looked_for_among_all_schemes() {
     near("held", second.x_t.abs(), pull.abs(), 1e-10, 20.0);
     assert!(first.x_n == 0.0 && moved[1] > 0.0 && pull.abs() < 0.4 * (14.31 + pull), "{first:?} {second:?}");
 }
+
+/// A row of bearings without friction on a spring along it, pushed and let go: it moves by P / k at the spring, and comes back to
+/// where it was. What is left of R z there is the rounding of P.
+#[test]
+fn a_load_that_is_let_off_leaves_the_rounding_of_what_it_was() {
+    let nodes = ["n0", "n1", "n2", "n3"];
+    let (push, spring) = (0.95 * 3.0, 100.0);
+    let contact = |node: &&str| json!({ "id": format!("on-{node}"), "node": node, "against": "ground", "normal": [0, 1], "friction": 0.0 });
+    let weight = |node: &&str| json!({ "point": { "at": node, "force": [0, -10] } });
+    let case = Case::json(json!({
+        "materials": { "steel": { "E": 200000, "nu": 0.3 } },
+        "sections": { "beam": { "area": 0.02, "inertia": 0.0002 } },
+        "nodes": { "n0": [0, 0], "n1": [1.1, 0], "n2": [2.2, 0], "n3": [3.3, 0] },
+        "bars": [{ "id": "B", "polyline": nodes, "material": "steel", "section": "beam" }],
+        "springs": [{ "at": "n0", "direction": [1, 0], "stiffness": spring }],
+        "contacts": nodes.iter().map(contact).collect::<Vec<_>>(),
+        "loads": {
+            "w": { "items": nodes.iter().map(weight).collect::<Vec<_>>() },
+            "p": { "items": [{ "point": { "at": "n3", "force": [3, 0] } }] }
+        },
+        "stages": [{ "w": 1 }, { "w": 1, "p": 0.95 }, { "w": 1 }]
+    }));
+    let history = followed(&case);
+    assert_eq!(history.end, HistoryEnd::Complete);
+    for (stage, expected) in history.stages.iter().zip([0.0, push / spring, 0.0]) {
+        near("z_t", stage.end.pairs[0].z_t, expected, 1e-12, push / spring);
+    }
+}
