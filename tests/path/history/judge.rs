@@ -86,11 +86,13 @@ pub(super) fn breach(data: &Data, history: &History) -> Option<String> {
         for (k, ends) in stage.moments.windows(2).enumerate() {
             let z = [data.displacements(&ends[0].pairs), data.displacements(&ends[1].pairs)];
             let force = [0, 1].map(|end| &data.r * &z[end] + data.load(&ends[end].factors));
-            // Rounding goes with the terms that a force sums.
-            let tiny = [0, 1].map(|end| {
+            // Rounding goes with the terms that a force sums, or summed: a load that is let off leaves the rounding of what it was.
+            let sizes = [0, 1].map(|end| {
                 let terms = data.r.map(f64::abs) * z[end].map(f64::abs) + data.sizes(&ends[end].factors);
                 1e-11 * terms
             });
+            let both = sizes[0].zip_map(&sizes[1], f64::max);
+            let tiny = [&both, &both];
             let short = 1e-9 * z[0].amax().max(z[1].amax());
             let place = |what: &str, pair: usize| {
                 let [a, b] = [&ends[0], &ends[1]];
