@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use super::course::Course;
 use super::follower::{Follower, Way};
+use super::loose_scheme::without_loose_motion;
 use super::walk::Walk;
 use crate::answer::check::check_contact;
 use crate::answer::pairs::{JointState, pair_states};
@@ -156,7 +157,7 @@ impl Walk<'_> {
         let checked = |point: Point| {
             let state = state_of(&problem, &found.contact, &refined(&problem, &found.contact, point));
             let pairs = pair_states(&problem, &found.contact, &state);
-            check_contact(&problem, &state, None).passed.then_some((state, pairs))
+            self.is_found(&problem, &state).then_some((state, pairs))
         };
         let first = found.basis.as_ref().and_then(|_| checked(found.point.clone()));
         let state = first
@@ -169,6 +170,12 @@ impl Walk<'_> {
         })
     }
 
+    /// Whether a state obeys its laws, and not only by a motion that nothing but rounding resists.
+    fn is_found(&self, problem: &ContactProblem, state: &JointState) -> bool {
+        check_contact(problem, state, None).passed
+            && without_loose_motion(problem, state).is_none_or(|rest| check_contact(problem, &rest, None).passed)
+    }
+
     /// Of all answers, where there are few schemes, the one with the least motion from where it stands.
     fn nearest_of_all(
         &self,
@@ -179,9 +186,8 @@ impl Walk<'_> {
         let contact = contact_lcp(problem, Covering::Cohesive).ok()?;
         let motion = |state: &JointState| (&state.z + committed - &self.standing.z).amax();
         let states = found.answers.into_iter().map(|answer| JointState::at(problem, answer.state.z, 0.0));
-        let nearest = states
-            .filter(|state| check_contact(problem, state, None).passed)
-            .min_by(|a, b| motion(a).total_cmp(&motion(b)))?;
+        let nearest =
+            states.filter(|state| self.is_found(problem, state)).min_by(|a, b| motion(a).total_cmp(&motion(b)))?;
         let pairs = pair_states(problem, &contact, &nearest);
         Some((nearest, pairs))
     }

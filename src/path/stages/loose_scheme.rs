@@ -7,7 +7,10 @@
 use nalgebra::DVector;
 
 use super::rate_problem::{RateProblem, Rates, moved, terms};
+use super::released::loose_motions;
 use super::standing::Standing;
+use crate::answer::pairs::JointState;
+use crate::contact::problem::ContactProblem;
 use crate::contact::sum::{HIDDEN, LAW_ROUNDING};
 use crate::lcp::problem::NOISE;
 
@@ -42,4 +45,28 @@ impl RateProblem<'_> {
         let sizes = self.laws.force_sizes(&rates.z, self.sizes);
         LAW_ROUNDING * sizes.amax() > HIDDEN * self.sizes.amax()
     }
+}
+
+/// A state with the forces that it has without the motion of the kernel that its scheme leaves to itself; `None` where there is no
+/// such motion.
+///
+/// R moves nothing along it, so that the forces of both are the same but for its rounding: where only the first obey the laws, the
+/// stiffness that resists the loads is rounding, and so are its displacements.
+pub(super) fn without_loose_motion(problem: &ContactProblem, state: &JointState) -> Option<JointState> {
+    let system = &*problem.system;
+    let slides_freely = |i: usize| state.z[i] > 0.0 && problem.laws[i].bound(0.0) == 0.0;
+    let free =
+        (0..system.pair_count()).filter(|&i| slides_freely(i)).filter_map(|i| system.pairs[i].plane_tangential());
+    let mut joints: Vec<usize> = (0..state.z.len()).filter(|&joint| state.z[joint] != 0.0).chain(free).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    let loose = loose_motions(system, &joints);
+    if loose.ncols() == 0 {
+        return None;
+    }
+    let mut z = state.z.clone();
+    let part = DVector::from_fn(joints.len(), |at, _| z[joints[at]]);
+    let along = &loose * loose.tr_mul(&part);
+    joints.iter().zip(along.iter()).for_each(|(&joint, motion)| z[joint] -= motion);
+    Some(JointState { z: state.z.clone(), ..JointState::at(problem, z, 0.0) })
 }

@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use serde_json::{Value, json};
-use stickslip::answer::record::Verdict;
+use stickslip::answer::record::{OutcomeKind, Verdict};
 use stickslip::path::stages::{History, HistoryEnd, follow};
 
-use super::judge::{Data, breach};
+use super::judge::{Data, breach, goes_on};
 use crate::common::{Case, near};
 
 fn followed(case: &Case) -> History {
@@ -167,4 +167,21 @@ fn a_load_that_is_let_off_leaves_the_rounding_of_what_it_was() {
     for (stage, expected) in history.stages.iter().zip([0.0, push / spring, 0.0]) {
         near("z_t", stage.end.pairs[0].z_t, expected, 1e-12, push / spring);
     }
+/// A soft frame on four feet that a force pushes until all slip and an oblique one lifts off: it slides as a whole then, and nothing
+/// resists that but the rounding of its stiffness. With 1e-7 more of the push that resisted as well, 1e10 away, and was taken for a
+/// state to jump to, whose forces did not pass their check. Of all 216 schemes none leads on, by R and RF alone.
+#[test]
+fn what_only_rounding_resists_is_nothing_to_jump_to() {
+    let case = Case::json(read(include_str!("frame_that_slides_off.json")));
+    let history = followed(&case);
+    let HistoryEnd::Limit { stage: 1, .. } = &history.end else { panic!("{:?}", history.end) };
+    let stage = &history.stages[1];
+    assert!(stage.end.check.passed && stage.end.outcome == OutcomeKind::Ray, "{:?}", stage.end.failure);
+    assert!(stage.moments.iter().all(|moment| !moment.jump));
+    let data = Data::of(&case.prepared, &case.scenario.parameter_values());
+    let last = stage.moments.last().expect("an end");
+    assert_eq!(goes_on(&data, last, &[1.0, -1.0], 1e3 * stage.max_slip()), Some(false));
+    let mut before = last.clone();
+    before.factors[1] += 2e-6;
+    assert_eq!(goes_on(&data, &before, &[1.0, -1.0], 1e-3 * stage.max_slip()), Some(true));
 }
