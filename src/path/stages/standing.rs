@@ -172,8 +172,14 @@ impl Standing {
         &self.force_sizes
     }
 
-    fn force_noise(&self, joint: usize) -> f64 {
+    /// What may be rounding of a force.
+    pub(super) fn force_noise(&self, joint: usize) -> f64 {
         NOISE * self.force_sizes[joint]
+    }
+
+    /// What may be rounding of a displacement.
+    pub(super) fn length_noise(&self, joint: usize) -> f64 {
+        NOISE * self.length_sizes[joint]
     }
 
     /// Bound of a pair under its present x_n.
@@ -192,7 +198,7 @@ impl Standing {
         for (i, pair) in system.pairs.iter().enumerate() {
             self.normal[i] = if pair.law.is_bilateral() {
                 Normal::Bilateral
-            } else if self.z[i] > NOISE * self.length_sizes[i] && !reached.contains(&Reached::Closing(i)) {
+            } else if self.z[i] > self.length_noise(i) && !reached.contains(&Reached::Closing(i)) {
                 Normal::Open
             } else {
                 self.z[i] = 0.0;

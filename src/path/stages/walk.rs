@@ -110,12 +110,9 @@ impl<'a> Walk<'a> {
             Ended::Interrupted => return Err(PathError::Interrupted),
             Ended::Breakdown(why) => return Err(breakdown(t, &why)),
         };
-        let (step, mut now) = next_event(self.place.laws, &self.standing, &rates, sizes);
-        // What is reached at the end but for rounding is reached at the end: there is no way left on which it turns.
+        let (step, mut now) = next_event(self.place.laws, &self.standing, &rates, (sizes, 1.0 - t));
+        // Likewise where the last digits of the place hide the way that is left.
         let to = if step >= 1.0 - t - LAW_ROUNDING { 1.0 } else { t + step };
-        if step > 1.0 - t {
-            now.clear();
-        }
         if to == t {
             // Nothing has moved: what was reached stays reached.
             now.retain(|limit| !reached.contains(limit));
