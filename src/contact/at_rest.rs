@@ -28,7 +28,9 @@ use crate::lcp::linear_program::{LinearProgram, Outcome};
 use crate::watch::Watch;
 use stickslip_numerics::least_norm::least_norm;
 
-/// Room, as a share of the largest force, that forces of least norm keep in every law: the program is exact to 1e-9.
+/// The program is exact to this share of the largest force.
+const EXACT: f64 = 1e-9;
+/// Room, as a share of the largest force, that forces of least norm keep in every law.
 const ROOM: f64 = 1e-7;
 /// Corrections of what has to be 0 exactly: each gains all digits of the numbers at hand.
 const CORRECTIONS: usize = 2;
@@ -230,7 +232,18 @@ impl Laws<'_> {
         let (amounts, unloaded) = least.unwrap_or((amounts, Vec::new()));
         let amounts = DVector::from_fn(self.stress.ncols(), |column, _| unit * amounts[column]);
         let carried = &self.start + self.stress * amounts;
-        Some((self.without_idle(carried, &unloaded)?, is_least_norm))
+        let carried = self.without_idle(carried, &unloaded)?;
+        self.obeyed(&carried, unit).then_some((carried, is_least_norm))
+    }
+
+    /// Whether forces obey the laws as exactly as the program is to find them: one that it almost solved may miss them by far more.
+    fn obeyed(&self, carried: &DVector<f64>, unit: f64) -> bool {
+        self.reached.iter().all(|&i| {
+            let (law, tangents) = (&self.exact.laws[i], self.pairs[i].tangents.clone());
+            let pressed = if self.open[i] { 0.0 } else { carried[i] };
+            let along = tangents.map(|joint| carried[joint] * carried[joint]).sum::<f64>().sqrt();
+            (law.is_bilateral() || pressed >= -EXACT * unit) && along <= law.bound(pressed.max(0.0)) + EXACT * unit
+        })
     }
 
     /// The same forces with exactly nothing where the laws admit nothing, which the program meets to its tolerance only.
@@ -240,12 +253,15 @@ impl Laws<'_> {
             return Some(carried);
         }
         let rows = self.stress.select_rows(&idle);
+        let size = carried.amax();
         for _ in 0..CORRECTIONS {
             let left = DVector::from_fn(idle.len(), |row, _| -carried[idle[row]]);
             carried += self.stress * least_norm(&rows, &left)?;
         }
+        // More is left where no self-stress of all takes it away.
+        let is_idle = idle.iter().all(|&joint| carried[joint].abs() <= EXACT * size);
         idle.iter().for_each(|&joint| carried[joint] = 0.0);
-        Some(carried)
+        is_idle.then_some(carried)
     }
 
     /// The joints of a pair that carry nothing by its laws: of an open or unloaded one, and of one without friction along

@@ -15,18 +15,20 @@ use super::beyond::explanation;
 use super::course::Course;
 use super::follower::{Follower, Limit, Place, Targets, Way, recorded};
 use super::record::History;
-use super::resting::{Rest, rest};
+use super::resting::{Beyond, Rest, rest};
 use super::standing::Laws;
 use super::walk::breakdown;
-use crate::answer::check::TOLERANCE;
+use crate::answer::check::{TOLERANCE, check_contact};
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{PairState, Ray, State};
+use crate::contact::at_rest::AtRest;
 use crate::contact::load_path::{is_answer, path_lcp};
 use crate::contact::problem::ContactProblem;
 use crate::contact::written::ContactLcp;
 use crate::explain::ray;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::parametric::{Parametric, Reach};
+use crate::lcp::problem::NOISE;
 use crate::lcp::variable::Variable;
 use crate::path::cone_step::behind_slips;
 use crate::path::start::{PathError, cold, state_of};
@@ -52,6 +54,8 @@ struct ForcedWalk<'a> {
     pairs: Vec<PairState>,
     /// In which sense each pair slipped last, ±1.
     last_slip: Vec<f64>,
+    /// The largest |z| met so far.
+    largest: f64,
 }
 
 /// What lies ahead of a place.
@@ -79,6 +83,7 @@ pub(super) fn follow<'a>(
         slips: DVector::zeros(joints),
         pairs: Vec::new(),
         last_slip: vec![0.0; laws.problem.system.pair_count()],
+        largest: 0.0,
     };
     walk.stand_unloaded();
     walk.begin(begin, targets.0)?;
@@ -121,6 +126,9 @@ impl ForcedWalk<'_> {
     fn stand(&mut self, problem: &ContactProblem, contact: &ContactLcp, mut state: JointState) {
         let system = &*self.place.laws.problem.system;
         state.left.clear();
+        // Where all joints close again, what is left of the displacements met is rounding, and opens nothing.
+        self.largest = self.largest.max((&state.z + &self.slips).amax());
+        state.z.iter_mut().filter(|z| z.abs() <= NOISE * self.largest).for_each(|z| *z = 0.0);
         let mut pairs = pair_states(problem, contact, &state);
         self.place.way = pairs.iter().map(|pair| (pair.state, pair.held)).collect();
         for (i, (pair, shown)) in system.pairs.iter().zip(&mut pairs).enumerate() {
@@ -147,11 +155,11 @@ impl ForcedWalk<'_> {
     }
 
     /// Whether a point of the LCP of a problem beyond the committed slips is the present state: no slip in it, and as far
-    /// open. Sizes are those of the two states.
+    /// open. Sizes are those of this point and of all states before.
     fn is_here(&self, problem: &ContactProblem, contact: &ContactLcp, point: &Point) -> bool {
         let there = state_of(problem, contact, point);
         let still = &self.state.z - &self.slips;
-        (&there.z - &still).amax() <= TOLERANCE * self.state.z.amax().max((&there.z + &self.slips).amax())
+        (&there.z - &still).amax() <= TOLERANCE * self.largest.max((&there.z + &self.slips).amax())
     }
 
     /// The next event after t, found from the scheme a little ahead. Unless it `has_jumped` to where it is, an answer at t
@@ -176,7 +184,8 @@ impl ForcedWalk<'_> {
                 jump = None;
                 continue;
             };
-            jump = Some((to, Box::new(found.contact.clone()), found.point.clone()));
+            jump = passes(&problem, &found.contact, &found.point)
+                .then(|| (to, Box::new(found.contact.clone()), found.point.clone()));
             if !is_answer(&path.lcp, basis) {
                 continue;
             }
@@ -185,7 +194,9 @@ impl ForcedWalk<'_> {
             };
             let start = engine.point();
             if !has_jumped && !self.is_here(&here, &path, &start) {
-                elsewhere = Some(Ahead::Jump(t, Box::new(path.clone()), start));
+                if passes(&here, &path, &start) {
+                    elsewhere = Some(Ahead::Jump(t, Box::new(path.clone()), start));
+                }
                 continue;
             }
             let reach = Reach { target: 1.0 - t, through: false, pivots: PIVOTS };
@@ -220,6 +231,11 @@ impl ForcedWalk<'_> {
         collapse.explanation = explanation(&collapse).to_owned();
         collapse
     }
+}
+
+/// Whether a point is a state that passes the check of an answer: what is jumped to hangs on no way that led there.
+fn passes(problem: &ContactProblem, contact: &ContactLcp, point: &Point) -> bool {
+    check_contact(problem, &state_of(problem, contact, point), None).passed
 }
 
 impl<'a> Follower<'a> for ForcedWalk<'a> {
@@ -265,11 +281,16 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
                 return Err(breakdown(t, &format!("the limit of {EVENTS} events in a stage was reached")));
             }
             let behind = |to: f64| self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
+            let passes = |to: f64, found: &AtRest| {
+                let problem = behind(to);
+                check_contact(&problem, &JointState::at_rest(&problem, found.clone()), None).passed
+            };
+            let beyond = Beyond { behind: &|to| Some(behind(to)), passes: &passes };
             let ahead = self.ahead(course, &rate, (t, has_jumped), &mut way)?;
             let rests = match ahead {
                 Ahead::Event(..) => None,
                 // What can stay where it is does not jump.
-                _ => rest(&|to| Some(behind(to)), (&self.state.z, &self.state.force), t, self.place.watch)?,
+                _ => rest(&beyond, (&self.state.z, &self.state.force), t, self.place.watch)?,
             };
             let (to, contact, state, jump) = match (ahead, rests) {
                 (_, Some(Rest { to, found })) => {

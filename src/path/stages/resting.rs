@@ -28,10 +28,17 @@ pub(super) struct Rest {
     pub(super) found: AtRest,
 }
 
-/// Rests as long as it can from place t, with total z and λ there; `behind` is the problem at a place of the stage, joints in
-/// force form, for slips that count from those at t. `None` where it cannot rest.
+/// A stage as a rest sees it.
+pub(super) struct Beyond<'p> {
+    /// The problem at a place, joints in force form, for slips that count from those where it begins to rest.
+    pub(super) behind: &'p dyn Fn(f64) -> Option<ContactProblem>,
+    /// Whether what is found at a place passes the check of an answer: a program finds it to its own tolerance.
+    pub(super) passes: &'p dyn Fn(f64, &AtRest) -> bool,
+}
+
+/// Rests as long as it can from place t, with total z and λ there; `None` where it cannot rest.
 pub(super) fn rest(
-    behind: &dyn Fn(f64) -> Option<ContactProblem>,
+    stage: &Beyond<'_>,
     (z, force): (&DVector<f64>, &DVector<f64>),
     t: f64,
     watch: &dyn Watch,
@@ -40,10 +47,10 @@ pub(super) fn rest(
         if watch.stop() {
             return Err(PathError::Interrupted);
         }
-        let Some(exact) = behind(to) else { return Ok(None) };
+        let Some(exact) = (stage.behind)(to) else { return Ok(None) };
         let openings: Vec<f64> = z.iter().take(exact.laws.len()).copied().collect();
         let found = at_rest_where(&exact, &openings, watch).map_err(|_| PathError::Interrupted)?;
-        Ok(found.filter(|found| leads_straight(&exact, (z, force), &found.state)))
+        Ok(found.filter(|found| (stage.passes)(to, found) && leads_straight(&exact, (z, force), &found.state)))
     };
     if let Some(found) = at(1.0)? {
         return Ok(Some(Rest { to: 1.0, found }));

@@ -2,11 +2,13 @@
 
 use super::leg::along;
 use super::{SpaceWalk, mean};
-use crate::path::cone_step::{Scheme, Step, exactly_behind};
+use crate::answer::check::check_contact;
+use crate::contact::at_rest::AtRest;
+use crate::path::cone_step::{Scheme, Step, behind_slips, exactly_behind};
 use crate::path::stages::course::Course;
 use crate::path::stages::follower::{Follower, Way};
 use crate::path::stages::integrals::Integrals;
-use crate::path::stages::resting::{Rest, rest};
+use crate::path::stages::resting::{Beyond, Rest, rest};
 use crate::path::start::PathError;
 
 impl SpaceWalk<'_> {
@@ -27,7 +29,15 @@ impl SpaceWalk<'_> {
         let laws = self.place.laws;
         let problem = along(laws.problem, course);
         let behind = |to: f64| exactly_behind(&problem(to), &self.z);
-        let Some(Rest { to, found }) = rest(&behind, self.here(), t, self.place.watch)? else { return Ok(None) };
+        let passes = |to: f64, found: &AtRest| {
+            let increments = Step::at_rest(problem(to), &self.z, found.clone()).increments;
+            check_contact(&behind_slips(problem(to), &self.z), &increments, None).passed
+        };
+        let Some(Rest { to, found }) =
+            rest(&Beyond { behind: &behind, passes: &passes }, self.here(), t, self.place.watch)?
+        else {
+            return Ok(None);
+        };
         let step = Step::at_rest(problem(to), &self.z, found);
         let (ends, forces) = ([&self.z, &step.z], [&self.increments.force, &step.increments.force]);
         let straight = Integrals::straight(to - t, ends, forces, &laws.problem.system);
