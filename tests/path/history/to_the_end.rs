@@ -180,6 +180,8 @@ fn a_load_that_is_let_off_leaves_the_rounding_of_what_it_was() {
     for (stage, expected) in history.stages.iter().zip([0.0, push / spring, 0.0]) {
         near("z_t", stage.end.pairs[0].z_t, expected, 1e-12, push / spring);
     }
+}
+
 /// A soft frame on four feet that a force pushes until all slip and an oblique one lifts off: it slides as a whole then, and nothing
 /// resists that but the rounding of its stiffness. With 1e-7 more of the push that resisted as well, 1e10 away, and was taken for a
 /// state to jump to, whose forces did not pass their check. Of all 216 schemes none leads on, by R and RF alone.
