@@ -140,12 +140,20 @@ pub fn edge(case: Case<'_>, name: &str, range: [f64; 2], which: Which) -> Result
         let Some(farther) = before.pop() else { break };
         collapse = farther;
     }
-    let Bracket { answer, none, proof } = narrowed(&run, answer, collapse, case.prepared.is_in_space())?;
+    let in_space = case.prepared.is_in_space();
+    let mut bracket = narrowed(&run, answer, collapse, in_space)?;
+    let mut exact = end_of_path(case, name, &bracket)?;
+    if exact.is_none() && !in_space && is_wide([&bracket.answer, bracket.collapse()], CLOSE) {
+        // No path tells where the answers end: runs do.
+        let Bracket { answer, none, proof } = bracket;
+        bracket = narrowed_by(&|value| run(value, Effort::All), answer, proof.unwrap_or(none), true)?;
+        exact = end_of_path(case, name, &bracket)?;
+    }
+    let Bracket { answer, none, proof } = bracket;
     let (collapse, undecided) = match proof {
         Some(proof) => (proof, Some(none)),
         None => (none, None),
     };
-    let exact = end_of_path(case, name, &answer, &collapse)?;
     Ok(Edge {
         value: exact.unwrap_or(answer.value),
         exact: exact.is_some(),
@@ -165,6 +173,18 @@ pub(super) struct Bracket {
     pub(super) none: Run,
     /// The nearest run with a proof that there is no answer, where it lies beyond `none`.
     pub(super) proof: Option<Run>,
+}
+
+impl Bracket {
+    /// The run without an answer that stands for the other side.
+    fn collapse(&self) -> &Run {
+        self.proof.as_ref().unwrap_or(&self.none)
+    }
+}
+
+/// Whether two runs are farther from one another than this share of their place.
+fn is_wide([inner, outer]: [&Run; 2], share: f64) -> bool {
+    (inner.value - outer.value).abs() > share * inner.value.abs().max(outer.value.abs())
 }
 
 /// The answer and the runs without one nearest to each other that further runs between them show. In space the first polygons
@@ -187,15 +207,15 @@ pub(super) fn narrowed(
     if none.is_answer() { thoroughly(none, collapse) } else { Ok(Bracket { none, ..bracket }) }
 }
 
+/// In one way. With `past_undecided` on to where the answers end, where runs are left open farther out than that.
 fn narrowed_by(
     run: &dyn Fn(f64) -> Result<Run, PathError>,
     mut answer: Run,
     mut collapse: Run,
-    in_space: bool,
+    past_undecided: bool,
 ) -> Result<Bracket, PathError> {
     let mut undecided: Vec<Run> = Vec::new();
-    let is_wide = |inner: f64, outer: f64, share: f64| (inner - outer).abs() > share * inner.abs().max(outer.abs());
-    while is_wide(answer.value, collapse.value, NARROW) {
+    while is_wide([&answer, &collapse], NARROW) {
         // Where a proof fails close to the edge, nearer to it there may still be one.
         let share = SHARES[undecided.len()];
         let middle = collapse.value + share * (answer.value - collapse.value);
@@ -215,14 +235,13 @@ fn narrowed_by(
         }
     }
     // Loads that forces within the friction bounds balance, and that the law of slip does not carry, may reach far from
-    // the answers to what is proved to be too large: there the answers end before the proofs begin. In the plane the exact
-    // path tells where.
+    // the answers to what is proved to be too large: there the answers end before the proofs begin.
     let nearest = undecided.into_iter().next();
-    let Some(none) = nearest.filter(|none| in_space && is_wide(answer.value, none.value, CLOSE)) else {
+    let Some(none) = nearest.filter(|none| past_undecided && is_wide([&answer, none], CLOSE)) else {
         return Ok(Bracket { answer, none: collapse, proof: None });
     };
     let mut bracket = Bracket { answer, none, proof: Some(collapse) };
-    while is_wide(bracket.answer.value, bracket.none.value, NARROW) {
+    while is_wide([&bracket.answer, &bracket.none], NARROW) {
         let middle = 0.5 * (bracket.answer.value + bracket.none.value);
         if middle == bracket.answer.value || middle == bracket.none.value {
             break;
@@ -257,7 +276,8 @@ fn with_nearer_proof(run: &dyn Fn(f64) -> Result<Run, PathError>, mut bracket: B
 }
 
 /// Where the exact path from the answer towards the collapse ends, between the two or within their rounding.
-fn end_of_path(case: Case<'_>, name: &str, answer: &Run, collapse: &Run) -> Result<Option<f64>, PathError> {
+fn end_of_path(case: Case<'_>, name: &str, bracket: &Bracket) -> Result<Option<f64>, PathError> {
+    let (answer, collapse) = (&bracket.answer, bracket.collapse());
     let there = case.at(name, answer.value)?;
     let here = there.case(case);
     let solved = here.solve_pairs()?;
