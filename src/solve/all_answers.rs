@@ -35,7 +35,8 @@ const MOST_ROWS: usize = 300;
 pub struct AllAnswers {
     /// Each answer as a solved state without pivots.
     pub answers: Vec<Solved>,
-    /// For each: whether it was proved in exact arithmetic.
+    /// For each: whether it was proved in exact arithmetic. One of rounded data that fails its check is none of the structure: what
+    /// resists its motions is rounding.
     pub exact: Vec<bool>,
     /// For each: whether others lie next to it.
     pub continuum: Vec<bool>,
@@ -143,7 +144,7 @@ impl Prepared {
             .iter()
             .map(|candidate| self.enumerated_answer(&problem, candidate))
             .collect::<Result<Vec<_>, _>>()?;
-        let count = answers.len();
+        let stands = |solved: &Solved| system.has_exact_data() || solved.answer.is_answer();
         let pairs = |direction: &DVector<f64>| {
             let pair = |i: usize| PairDirection::of(system, i, direction);
             Moving::Pairs((0..system.pair_count()).map(pair).collect())
@@ -153,8 +154,8 @@ impl Prepared {
             directions: piece.directions.iter().map(pairs).collect(),
         };
         Ok(AllAnswers {
+            exact: answers.iter().map(stands).collect(),
             answers,
-            exact: vec![true; count],
             continuum: found.answers.iter().map(|answer| answer.continuum).collect(),
             continua: found.continua.iter().map(continuum).collect(),
             complete: found.complete,

@@ -233,6 +233,16 @@ impl Job<'_> {
         Ok(ladder.without_answer())
     }
 
+    /// Whether one of the answers found passes its check.
+    fn holds_any(&self, found: &Enumeration) -> Result<bool, SolveError> {
+        for candidate in &found.answers {
+            if self.prepared.enumerated_answer(self.problem, candidate)?.answer.is_answer() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
     /// Rules that the user chose have failed: says whether the default ones do better.
     fn compare_with_default(&self, solved: &mut Solved) -> Result<(), SolveError> {
         let default = Rules::default();
@@ -252,7 +262,7 @@ impl Job<'_> {
                     mark_proved(solved);
                     String::new()
                 }
-                Some(found) if !found.answers.is_empty() && !found.within_rounding => {
+                Some(found) if !found.within_rounding && self.holds_any(&found)? => {
                     " An answer exists: going through all working schemes finds it (`enumerate`).".to_owned()
                 }
                 _ => format!(" The default rules ({words}) find no answer either."),

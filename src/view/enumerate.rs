@@ -84,6 +84,9 @@ fn count(all: &AllAnswers) -> String {
         }
         0 if all.none() => "no answer: proved by going through all of them".to_owned(),
         0 => "no answer found".to_owned(),
+        _ if all.answers.iter().all(|solved| !solved.answer.is_answer()) => {
+            "no answer that passes its check".to_owned()
+        }
         1 if all.exact == [false] => {
             "one answer up to rounding; the numbers as stored, taken exactly, have none".to_owned()
         }
@@ -97,7 +100,11 @@ pub fn write(out: &mut dyn Write, all: &AllAnswers, style: &Style) -> io::Result
         let answer = &solved.answer;
         let largest = answer.pairs.iter().flat_map(|pair| [pair.z_n, pair.z_t]).fold(0.0, |a: f64, z| a.max(z.abs()));
         let exact = all.exact.get(k).copied().unwrap_or_default();
-        let proof = if exact { "proved in exact arithmetic" } else { "holds up to rounding" };
+        let proof = match exact {
+            true => "proved in exact arithmetic",
+            false if answer.is_answer() => "holds up to rounding",
+            false => "of the numbers as stored, and it fails its check",
+        };
         let near = if all.continuum.get(k).copied().unwrap_or_default() { "; others lie next to it" } else { "" };
         let size =
             if answer.solution.is_none() { format!("; largest motion {}", short(largest)) } else { String::new() };

@@ -1,5 +1,7 @@
 //! What `limit` claims: the way it looks, the end of a path beyond which there are answers, limits of 0.
 
+use serde_json::{Value, json};
+
 use super::common::lines::{read, report, text};
 
 /// Four blocks in two courses: the path of the push ends at 1.2444, yet there are answers at 1.25 and beyond, under another
@@ -164,4 +166,74 @@ fn what_a_run_beside_the_limit_proves_is_said_of_the_limit() {
     assert_eq!(found["collapse"]["verdict"], "proved", "{found}");
     // At one load, not at all beyond.
     assert!(text(&mut track, "limit h").contains("whether loads beyond it can be carried is not proved"));
+}
+
+/// Bricks of one course after another, each half a brick over from the course below, as plates: (id, x, length).
+fn courses(count: usize, bricks: usize, [length, height]: [f64; 2]) -> (Vec<Value>, Vec<Value>) {
+    let (mut plates, mut contacts) = (Vec::new(), Vec::new());
+    let mut below: Vec<(String, f64, f64)> = Vec::new();
+    for course in 0..count {
+        let end = bricks as f64 * length;
+        let shift = if course % 2 == 0 { 0.0 } else { 0.5 * length };
+        let cuts = (0..=bricks + 1).map(|k| (k as f64 * length - shift).clamp(0.0, end)).collect::<Vec<_>>();
+        let own = cuts.windows(2).filter(|cut| cut[1] > cut[0]).enumerate();
+        let own: Vec<(String, f64, f64)> =
+            own.map(|(k, cut)| (format!("b{course}-{k}"), cut[0], cut[1] - cut[0])).collect();
+        for (id, x, wide) in &own {
+            let halves = (2.0 * wide / length).round() as usize;
+            plates.push(json!({
+                "id": id, "origin": [x, course as f64 * height], "size": [wide, height], "divisions": [halves, 1],
+                "thickness": 1, "material": "stone", "plane": "stress"
+            }));
+            if course == 0 {
+                contacts.push(json!({ "id": format!("g{id}"), "edge": format!("{id}.bottom"), "against": "ground", "friction": 1.2 }));
+            }
+            for half in 0..halves {
+                let from = x + 0.5 * half as f64 * length;
+                let Some((under, left, _)) = below
+                    .iter()
+                    .find(|(_, left, wide)| *left <= from + 1e-9 && from + 0.5 * length <= left + wide + 1e-9)
+                else {
+                    continue;
+                };
+                let over = (2.0 * (from - left) / length).round() as usize;
+                contacts.extend([0, 1].map(|end| {
+                    json!({
+                        "id": format!("{id}-{half}{end}"), "node": format!("{id}[{},0]", half + end),
+                        "against": format!("{under}[{},1]", over + end), "normal": [0, 1], "friction": 1.2
+                    })
+                }));
+            }
+        }
+        below = own;
+    }
+    (plates, contacts)
+}
+
+/// A dry wall of three courses, tilted until the half brick at its lower end, and the brick that half of it carries, turn over its
+/// lower edge: of half a brick at 1/4 and a brick at 1/2 of the length before the edge, tan α = (½·¼ + ½) l / ((½·½ + 3/2) h). What is
+/// proved to fall begins farther out, since friction of 1.2 might hold a joint that opens, if opening pressed it.
+#[test]
+fn the_most_of_a_tilt_lies_where_answers_end_before_what_is_proved() {
+    let [length, height] = [0.6, 0.3];
+    let (plates, contacts) = courses(3, 2, [length, height]);
+    let mut wall = super::common::lines::session(
+        stickslip::model::load::load_text(
+            "wall",
+            &super::common::scenario_text(json!({
+                "parameters": { "alpha": { "value": 0, "min": 0, "max": 60 }, "a": { "formula": "alpha*pi/180" } },
+                "materials": { "stone": { "E": 1e7, "nu": 0.2, "density": 2 } },
+                "plates": plates, "contacts": contacts,
+                "loads": { "w": { "items": [{ "gravity": { "acceleration": ["10*sin(a)", "-10*cos(a)"] } }] } }
+            })),
+            None,
+        )
+        .expect("a wall"),
+    );
+    let found = report(&mut wall, "find most alpha where outcome answer").unwrap();
+    let slope = (0.5 * 0.25 + 0.5) * length / ((0.5 * 0.5 + 1.5) * height);
+    let most = found["value"].as_f64().expect("a tilt");
+    assert!((most - slope.atan().to_degrees()).abs() <= 1e-6, "{found}");
+    assert!(found["undecided"]["value"].as_f64().expect("a run") < most + 1e-5, "{found}");
+    assert!(found["collapse"]["value"].as_f64().expect("a run") > most + 1.0, "{found}");
 }

@@ -201,3 +201,37 @@ fn what_two_joints_show_of_a_matrix_is_not_rounding() {
     assert_eq!(refused(json!([[0.333333333333, 0.666666666667], [0.666666666667, 1.33333333333]])), None);
     assert!(refused(json!([[0.333333333333, 0.666666669], [0.666666669, 1.33333333333]])).is_some());
 }
+
+/// A bar on two feet whose spring is oblique, turned about the first foot by its loads: the second foot lifts off, and nothing
+/// resists. The stored stiffness does by its rounding, so that its numbers have an answer 1e28 away: that is none of the structure.
+#[test]
+fn an_answer_that_rounding_makes_is_not_proved() {
+    let (first, second) = ([0.1645, -0.01296], [2.946, 0.1447]);
+    let (weight, push) = (10.0 * 0.01 * 1.0, [0.335 * 14.74, 0.335 * 17.41]);
+    let arm = [0, 1].map(|i| second[i] - first[i]);
+    let length = f64::hypot(arm[0], arm[1]);
+    // Counter-clockwise about the first foot: the second one lifts off.
+    assert!(arm[0] * push[1] - arm[1] * push[0] > 0.5 * arm[0] * weight * length);
+    let case = Case::json(json!({
+        "materials": { "m": { "E": 3e7, "nu": 0.2, "density": 1 } },
+        "sections": { "s": { "area": 0.01, "inertia": 0.0001 } },
+        "nodes": { "a": first, "b": second },
+        "bars": [{ "id": "g", "nodes": ["a", "b"], "material": "m", "section": "s", "divisions": 2 }],
+        "springs": [{ "at": "a", "direction": [0.1124, -0.7651], "stiffness": 30000 }],
+        "contacts": [
+            { "id": "p0", "node": "a", "against": "ground", "normal": [0, 1], "friction": 1, "cohesion": 0.15 },
+            { "id": "p1", "node": "b", "against": "ground", "normal": [0, 1], "friction": 0.2 }
+        ],
+        "loads": { "w": { "items": [
+            { "gravity": { "acceleration": [0, -10] } },
+            { "point": { "at": "b", "force": [push[0], push[1]] } },
+            { "point": { "at": "a", "force": [-0.171, -0.94] } }
+        ] } }
+    }));
+    assert!(!case.solve(&[]).is_answer());
+    let all =
+        case.prepared.all_answers(&case.scenario.parameter_values(), Rules::default(), &Quiet).expect("few pairs");
+    for (solved, exact) in all.answers.iter().zip(&all.exact) {
+        assert!(!exact && !solved.answer.is_answer(), "{:?}", solved.answer.pairs);
+    }
+}

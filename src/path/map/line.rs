@@ -201,8 +201,10 @@ impl<'a> Lines<'a> {
             // Too many for that.
             Err(_) => return Ok(Vec::new()),
         };
-        let mut others: Vec<Solved> =
-            all.into_iter().filter(|other| here != Some(&scheme(&other.answer.pairs))).collect();
+        let mut others: Vec<Solved> = all
+            .into_iter()
+            .filter(|other| other.answer.is_answer() && here != Some(&scheme(&other.answer.pairs)))
+            .collect();
         // The farthest first: what lies between two answers mostly is unstable.
         others.sort_by_key(|other| std::cmp::Reverse(farness(here, &other.answer.pairs)));
         Ok(others)

@@ -291,7 +291,8 @@ impl Map {
             return Ok(());
         }
         if enumerated && let Ok(all) = there.prepared.all_answers(&there.values, Rules::default(), case.watch) {
-            let proved = all.complete && all.undecided == 0 && !all.within_rounding && all.continua.is_empty();
+            let is_whole = all.complete && all.undecided == 0 && !all.within_rounding && all.continua.is_empty();
+            let proved = is_whole && all.exact.iter().all(|exact| *exact);
             region.answers = proved.then_some(all.answers.len());
         }
         if let Some(quantity) = quantity {
