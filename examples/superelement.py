@@ -5,8 +5,9 @@
     write("frame.json", K, {"weight": F}, nodes={"A": (0, 0)}, dofs=[("A", "x"), …], contacts=[…])
 
 K may be a scipy sparse matrix, a numpy array or a list of rows; a load one number for each dof. Files K.mtx and CASE.mtx are
-written beside the scenario. `from_pynite` takes K and F from a PyNite model in the x-y plane. Run without arguments it
-writes a beam on three supports of friction that it assembles itself, with nothing but the standard library.
+written beside the scenario. In space nodes are (x, y, z), dofs "x", "y", "z", "rx", "ry", "rz". `from_pynite` takes K and F from a
+PyNite model in the x-y plane. Run without arguments it writes a beam on three supports of friction that it assembles itself,
+with nothing but the standard library.
 """
 
 import json
@@ -50,13 +51,15 @@ def write(path, stiffness, forces, nodes, dofs, **rest):
     for name, values in forces.items():
         cases[name] = {"file": f"{path.stem}-{name}.mtx"}
         write_column(path.with_name(cases[name]["file"]), values)
+    in_space = any(len(place) == 3 for place in nodes.values())
     scenario = {
         "format": "stickslip/1",
         "title": rest.pop("title", path.stem),
+        **({"dimension": 3} if in_space else {}),
         "superelement": {
             "stiffness": {"file": file},
             "loads": cases,
-            "nodes": {name: [float(x), float(y)] for name, (x, y) in nodes.items()},
+            "nodes": {name: [float(number) for number in place] for name, place in nodes.items()},
             "dofs": [list(dof) for dof in dofs],
         },
         **rest,

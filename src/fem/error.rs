@@ -18,12 +18,18 @@ pub enum MainSystemError {
     OverConstrained(Vec<OverConstraint>),
     /// The structure moves freely although every joint is on.
     #[error(
-        "the structure is a mechanism whatever its contacts do: {} {}; add a support, a tie, a bar or a spring that holds it",
+        "the structure is a mechanism whatever its contacts do: {} {}; {}add a support, a tie, a bar or a spring that holds it",
         match .body {
             Some(body) => format!("{body} is free to move, its node {node_id}"),
             None => format!("node {node_id} is free to move"),
         },
-        .direction
+        .direction,
+        match .beside {
+            Some([own, other]) => format!(
+                "its node {own} lies on {other}, which joins nothing by itself: a contact or a tie does; "
+            ),
+            None => String::new(),
+        }
     )]
     Mechanism {
         /// The node that moves most.
@@ -34,6 +40,8 @@ pub enum MainSystemError {
         body: Option<String>,
         /// How it moves.
         direction: FreeDirection,
+        /// Ids of a node of that body and of one at the same place that nothing joins to it.
+        beside: Option<[String; 2]>,
     },
     /// The structure stands, but on so small a share of the stiffness of its stiffest part that not even doubled
     /// precision can solve it.

@@ -3,6 +3,8 @@
 //! R z = 0 exactly for z = B u, u in ker K. The rigid motions of loose parts give Z to rounding; R is then replaced
 //! by (1 − Z Zᵀ) R (1 − Z Zᵀ), so that mechanisms are free to the last digit.
 
+use std::collections::{BTreeSet, HashMap};
+
 use nalgebra::{DMatrix, DVector};
 
 use super::error::{FreeDirection, MainSystemError};
@@ -99,10 +101,12 @@ pub fn mechanism(structure: &Structure, u: &[[f64; 6]]) -> MainSystemError {
         u.iter_mut().for_each(|u| u[..3].fill(0.0));
     }
     let node = most_moved(&u);
+    let body = body_of(structure, node);
     MainSystemError::Mechanism {
         node,
         node_id: structure.nodes[node].id.clone(),
-        body: body_of(structure, node),
+        beside: body.as_deref().and_then(|body| beside(structure, body)),
+        body,
         direction: FreeDirection::of(structure.dimension, u[node]),
     }
 }
@@ -116,6 +120,23 @@ fn body_of(structure: &Structure, node: usize) -> Option<String> {
     let contains = |name: &&str| structure.elements_of_body(name).is_some_and(|elements| elements.iter().any(has));
     // The parts of a mesh come last.
     structure.bodies().into_iter().rfind(contains).map(str::to_owned)
+}
+
+/// Ids of a node of a body and of one of another part at the same place, where no contact or tie has the first.
+fn beside(structure: &Structure, body: &str) -> Option<[String; 2]> {
+    let own: BTreeSet<usize> = (structure.elements_of_body(body)?.into_iter())
+        .flat_map(|element| structure.elements[element].nodes.iter().copied())
+        .collect();
+    let of_pairs = structure.pairs.iter().flat_map(|pair| pair.weights.iter().map(|(node, _)| *node));
+    let joined: BTreeSet<usize> =
+        of_pairs.chain(structure.ties.iter().flat_map(|tie| tie.nodes.iter().copied())).collect();
+    let size = structure.extent().into_iter().fold(0.0, f64::max);
+    let place = |node: usize| structure.nodes[node].position.map(|x| (x / (UNFELT * size)).round() as i64);
+    let others: HashMap<[i64; 3], usize> =
+        (0..structure.nodes.len()).filter(|node| !own.contains(node)).map(|node| (place(node), node)).collect();
+    let free = own.into_iter().filter(|node| !joined.contains(node));
+    let (node, other) = free.filter_map(|node| Some((node, *others.get(&place(node))?))).next()?;
+    Some([node, other].map(|node| structure.nodes[node].id.clone()))
 }
 
 /// The node with the largest translation, or rotation where nothing translates.

@@ -217,7 +217,10 @@ pub fn write_limit(
     unit: Option<&str>,
     style: &Style,
 ) -> io::Result<()> {
-    let number = |value: f64| with_unit(&exact(value), unit);
+    // All digits where ten do not tell one end from the next.
+    let ends = [found.shakes_down, found.beyond.as_ref().map(|beyond| beyond.value)].map(|end| end.map(exact));
+    let is_told = ends[0].is_none() || ends[0] != ends[1];
+    let number = |value: f64| with_unit(&if is_told { exact(value) } else { value.to_string() }, unit);
     let from = number(found.from);
     let (shakes_down, beyond) = match (found.shakes_down, &found.beyond) {
         (Some(shakes_down), beyond) => (shakes_down, beyond),

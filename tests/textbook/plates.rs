@@ -14,6 +14,7 @@
 //! Sliding: 4 T = 8 f q, T = 200 f, p = (4 T − 800 f)/(17 d_τ). Overturning about the right end of the joint (f > 2):
 //! 4 T·2 = 800·4, T = 400; the lever arms of the pairs sum to 68, so p = (8 T − 3200)/68.
 
+use serde_json::json;
 use stickslip::answer::record::OutcomeKind;
 use stickslip::model::rules::Covering;
 
@@ -124,4 +125,21 @@ fn sizes() {
     assert_eq!(free.size.unknowns, Some(612));
     assert_eq!(free.size.pairs, 17);
     assert_eq!(free.size.lcp, 51);
+}
+
+/// Two plates, one drawn on the other with nodes at the same places: nothing joins them, and it is said what would.
+#[test]
+fn a_plate_that_only_lies_on_another_is_told_so() {
+    let plate = |id: &str, y: f64| json!({ "id": id, "origin": [0, y], "size": [2, 1], "divisions": [2, 1], "thickness": 1, "material": "m", "plane": "stress" });
+    let text = scenario_text(json!({
+        "materials": { "m": { "E": 1000, "nu": 0.2 } },
+        "plates": [plate("slab", 0.0), plate("stem", 1.0)],
+        "contacts": [{ "id": "c", "edge": "slab.bottom", "against": "ground", "friction": 0.5 }],
+        "loads": { "w": { "items": [{ "point": { "at": "slab[0,1]", "force": [0, -1] } }] } }
+    }));
+    let scenario = stickslip::model::load::load_text("test", &text, None).expect("read");
+    let Err(refused) = stickslip::solve::prepare(&scenario, &stickslip::watch::Quiet) else { panic!("to be refused") };
+    let refused = refused.to_string();
+    assert!(refused.contains("stem is free to move"), "{refused}");
+    assert!(refused.contains("its node stem[0,0] lies on slab[0,1], which joins nothing by itself"), "{refused}");
 }

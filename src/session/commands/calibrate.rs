@@ -28,7 +28,7 @@ use crate::session::language::range;
 /// `stages`, are those of the load history.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Example:\n  calibrate\n  calibrate f 0..0.8\n  calibrate f where ux s3 = 0.0121, ux s6 = 0.0312 ± 0.0002"
+    after_help = "Example:\n  calibrate\n  calibrate f 0..0.8\n  calibrate f where ux s3 = 0.0121 ± 0.0001, ux s6 = 0.0312 ± 0.0002"
 )]
 pub struct Calibrate {
     /// The friction parameters with their ranges, `where` and what was measured

@@ -47,9 +47,9 @@ impl Session {
     ) -> Result<(Chart, Option<Vec<OnPath>>), CommandError> {
         let path = self.need_path()?;
         let units = &self.now.scenario.units;
-        let (of, over) = match of {
-            [of @ .., word, name] if word == "over" => (of, Some(abscissa(path, name)?)),
-            of => (of, None),
+        let (of, over) = match of.iter().rposition(|word| word == "over") {
+            Some(at) if at + 1 < of.len() => (&of[..at], Some(abscissa(path, &of[at + 1..].join(" "))?)),
+            _ => (of, None),
         };
         let (quantity, names) = match of.split_first() {
             Some((word, rest)) if word == "slip" => (Zone::Slip, rest),
