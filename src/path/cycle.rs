@@ -9,6 +9,7 @@ use super::stages::{Begin, History, HistoryEnd, RESTS, StageResult};
 use super::start::PathError;
 use super::static_shakedown::{Static, static_shakedown};
 use super::to_and_fro::ToAndFro;
+use super::widening::{Alike, stays_open};
 use crate::answer::record::{PairState, Ray, Verdict};
 use crate::contact::problem::ContactProblem;
 use crate::contact::system::ContactSystem;
@@ -86,6 +87,9 @@ pub struct Turn {
     pub difference: Option<f64>,
     /// By how much the gap of a pair that stays open has grown most, where that difference leaves it out: no force feels it.
     pub gap_growth: f64,
+    /// Whether such gaps close within a cycle, event by event as in the two cycles before.
+    #[serde(skip)]
+    pub gaps_close: bool,
     /// Working schemes passed on the way there and back.
     pub schemes: usize,
     /// Whether the next cycle passes the same in the same order; `None` where none was followed.
@@ -325,17 +329,25 @@ fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -
         let pairs: Vec<PairCycle> = pairs.collect();
         let net = pairs.iter().fold(0.0, |a: f64, pair| a.max(pair.net.abs()));
         // Where slips go on, gaps that never close may grow with them: the next cycle, farther open, does not feel it.
-        let grows: Vec<bool> = (0..pairs.len()).map(|pair| net > 0.0 && stays_open(halves, pair)).collect();
+        let stays: Vec<bool> = (0..pairs.len()).map(|pair| net > 0.0 && stays_open(halves, pair)).collect();
+        // So it is with gaps that close in between where three cycles go alike event by event.
+        let alike = net > 0.0 && number > 1 && {
+            let cycle = |back: usize| [&stages[there - 2 * back], &stages[there - 2 * back + 1]];
+            let (force, length) = (|off| sizes.force_share(off) <= same, |off| sizes.gap_share(off) <= same);
+            Alike { force: &force, length: &length, place: same }.only_widens([cycle(0), cycle(1), cycle(2)])
+        };
+        let gaps_close = std::cell::Cell::new(false);
         let gap_growth = std::cell::Cell::new(0.0);
         let off = |now: usize, before: usize| {
-            end(now).iter().zip(end(before)).zip(&grows).fold(0.0, |largest: f64, ((a, b), grows)| {
+            end(now).iter().zip(end(before)).zip(&stays).fold(0.0, |largest: f64, ((a, b), stays)| {
                 let friction = match (a.space, b.space) {
                     (Some(a), Some(b)) => apart(a.x_t, b.x_t),
                     _ => (a.x_t - b.x_t).abs(),
                 };
                 let forces = sizes.force_share((a.x_n - b.x_n).abs().max(friction));
                 let gap = sizes.gap_share((a.z_n - b.z_n).abs());
-                if *grows && a.z_n > b.z_n && gap > same {
+                if (*stays || alike) && a.z_n > b.z_n && gap > same {
+                    gaps_close.set(gaps_close.get() || !stays);
                     gap_growth.set(f64::max(gap_growth.get(), a.z_n - b.z_n));
                     return largest.max(forces);
                 }
@@ -354,8 +366,8 @@ fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -
         let in_space = end(back).iter().any(|pair| pair.space.is_some());
         let repeated = (number + 1 < cycles && !in_space).then(|| schemes(there).eq(schemes(there + 2)));
         let before = turns.last().and_then(|turn: &Turn| turn.difference);
-        let (gap_growth, schemes) = (gap_growth.get(), schemes(there).count());
-        turns.push(Turn { dissipated: lost, pairs, difference, gap_growth, schemes, repeated });
+        let (gap_growth, gaps_close, schemes) = (gap_growth.get(), gaps_close.get(), schemes(there).count());
+        turns.push(Turn { dissipated: lost, pairs, difference, gap_growth, gaps_close, schemes, repeated });
         // A cycle that only comes near to the one before is followed by others that come nearer: how far in all?
         let tail = difference.zip(before).map_or(0.0, |(now, before)| tail(now, before));
         if closed > same || tail > same {
@@ -378,12 +390,6 @@ fn judged(stages: &[StageResult], complete: bool, (softest, same): (f64, f64)) -
     (kind, turns)
 }
 
-/// Whether a pair is open all through the stages, with nothing that holds it across its gap.
-fn stays_open(stages: [&StageResult; 2], pair: usize) -> bool {
-    let mut moments = stages.into_iter().flat_map(|stage| &stage.moments).map(|moment| &moment.pairs[pair]);
-    moments.all(|pair| pair.z_n > 0.0 && pair.bound == 0.0)
-}
-
 fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: ToAndFro<'_>) -> String {
     let count = turns.len();
     match kind {
@@ -396,14 +402,11 @@ fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: ToAndFro
         }
         Kind::Alternates => format!("the slips of cycle {count} go to and fro; {}", recurrence(turns, same)),
         Kind::Ratchets => {
-            let grown = turns.last().map_or(0.0, |turn| turn.gap_growth);
-            let grown = match grown > 0.0 {
-                true => format!(
-                    ", and gaps that stay open all the time wider by up to {}, which no force feels",
-                    short(grown)
-                ),
-                false => String::new(),
-            };
+            let grown = turns.last().filter(|turn| turn.gap_growth > 0.0).map_or(String::new(), |turn| {
+                let [stay, open] =
+                    if turn.gaps_close { ["", " while they are open"] } else { [" that stay open all the time", ""] };
+                format!(", and gaps{stay} wider by up to {}{open}, which no force feels", short(turn.gap_growth))
+            });
             format!("cycle {count} leaves slips behind{grown}; {}", recurrence(turns, same))
         }
         Kind::Collapses => load.end_sentence(history),
@@ -417,6 +420,19 @@ fn unrepeated(turns: &[Turn], same: f64) -> String {
     let count = turns.len();
     let difference = |back: usize| count.checked_sub(back).and_then(|index| turns[index].difference);
     let Some(last) = difference(1) else { return format!("no cycle of {count} repeats to {same:e}") };
+    let before = count.checked_sub(2).map(|index| &turns[index]);
+    if let Some(before) =
+        before.filter(|turn| last.max(turn.difference.map_or(0.0, |before| tail(last, before))) <= same)
+        && let Some((now, then)) = least_repeated(&turns[count - 1], before)
+    {
+        return format!(
+            "forces and gaps of cycle {count} are those of the one before to {same:e}, but not what it leaves behind: {} slips on by \
+             {} after {} in that one",
+            now.pair,
+            short(now.net),
+            short(then.net)
+        );
+    }
     let differs = format!("cycle {count} differs from the one before by {last:.1e} of the largest force or gap");
     let Some(before) = difference(2).filter(|before| last < *before) else {
         return format!("no cycle of {count} is found to repeat to {same:e}; {differs}");
@@ -427,6 +443,12 @@ fn unrepeated(turns: &[Turn], same: f64) -> String {
         last / before,
         tail(last, before)
     )
+}
+
+/// The pair whose way over a cycle is least like that over the one before, in both.
+fn least_repeated<'t>(turn: &'t Turn, before: &'t Turn) -> Option<(&'t PairCycle, &'t PairCycle)> {
+    let off = |(now, then): &(&PairCycle, &PairCycle)| (now.net - then.net).abs();
+    turn.pairs.iter().zip(&before.pairs).max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
 /// Why every further cycle is like the last.
@@ -449,6 +471,12 @@ fn recurrence(turns: &[Turn], same: f64) -> String {
         ),
         (Some(now), _) => format!("to {now:.1e} of the largest"),
     };
+    if last.gaps_close {
+        return format!(
+            "event by event its forces are those of the two cycles before, {near}, and gaps widen and slips go on by the same from \
+             each to the next, so that no law comes nearer to its limit: to these digits every further cycle does the same{next}"
+        );
+    }
     let others = if last.gap_growth > 0.0 { "other " } else { "" };
     format!(
         "its forces and {others}gaps are at its end what they were at its beginning, {near}. The rates depend on nothing else: to these \
@@ -461,3 +489,7 @@ fn recurrence(turns: &[Turn], same: f64) -> String {
 fn tail(now: f64, before: f64) -> f64 {
     if now <= NOISE || now >= before { 0.0 } else { now * now / (before - now) }
 }
+
+#[cfg(test)]
+#[path = "cycle_tests.rs"]
+mod tests;

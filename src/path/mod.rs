@@ -40,3 +40,4 @@ mod sweep_points;
 pub mod sweep_run;
 mod to_and_fro;
 pub mod way;
+mod widening;

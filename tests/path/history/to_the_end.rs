@@ -3,7 +3,8 @@
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use serde_json::{Value, json};
 use stickslip::answer::record::{OutcomeKind, Verdict};
-use stickslip::path::stages::{History, HistoryEnd, follow};
+use stickslip::path::cycle::{Kind, cycle};
+use stickslip::path::stages::{Begin, History, HistoryEnd, StageResult, follow};
 
 use super::judge::{Data, breach, converges, distances, goes_on};
 use crate::common::{Case, near};
@@ -199,4 +200,35 @@ fn what_only_rounding_resists_is_nothing_to_jump_to() {
     let mut before = last.clone();
     before.factors[1] += 2e-6;
     assert_eq!(goes_on(&data, &before, &[1.0, -1.0], 1e-3 * stage.max_slip()), Some(true));
+}
+
+/// A thin arch that a quake to and fro tips from one set of hinges to another: its feet slide apart by the same in each cycle, and
+/// gaps that open and close in it are wider each time. Ten stages, followed one by one and judged from R and RF alone, slip in their
+/// last cycle what `cycle` says that each further one does.
+#[test]
+fn gaps_that_widen_while_they_are_open_hide_no_ratchet() {
+    let case = Case::json(read(include_str!("arch_that_rocks.json")));
+    let history = jumped(&case);
+    assert_eq!(history.end, HistoryEnd::Complete);
+    let values = case.scenario.parameter_values();
+    let data = Data::of(&case.prepared, &values);
+    // From jump to jump.
+    for stage in &history.stages {
+        for way in stage.moments.chunk_by(|_, next| !next.jump) {
+            let way = StageResult { moments: way.to_vec(), ..stage.clone() };
+            assert_eq!(breach(&data, &History { stages: vec![way], ..history.clone() }), None);
+        }
+    }
+    let found =
+        cycle(case.prepared.case(&case.scenario, &values), "q", [-0.5, 1.0], 8, &Begin::Unloaded).expect("cycles");
+    assert_eq!(found.kind, Kind::Ratchets, "{}", found.sentence);
+    assert!(found.sentence.contains("while they are open, which no force feels"), "{}", found.sentence);
+    let stages = &history.stages;
+    let last = stages[9].slip.iter().zip(&stages[10].slip).map(|(there, back)| there + back);
+    for (pair, slipped) in found.turns.last().expect("a cycle").pairs.iter().zip(last) {
+        near(&pair.pair, pair.net, slipped, 1e-9, stages[10].max_slip_increment());
+    }
+    let wider = |pair: usize| stages[10].end.pairs[pair].z_n - stages[8].end.pairs[pair].z_n;
+    let widest = (0..stages[10].end.pairs.len()).map(wider).fold(0.0, f64::max);
+    near("gap", found.turns.last().expect("a cycle").gap_growth, widest, 1e-9, widest);
 }
