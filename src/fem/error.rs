@@ -25,8 +25,9 @@ pub enum MainSystemError {
         },
         .direction,
         match .beside {
-            Some([own, other]) => format!(
-                "its node {own} lies on {other}, which joins nothing by itself: a contact or a tie does; "
+            Some(nodes) => format!(
+                "its node {} lies on {}, which joins nothing by itself: a contact or a tie does; ",
+                nodes[0], nodes[1]
             ),
             None => String::new(),
         }
@@ -41,7 +42,7 @@ pub enum MainSystemError {
         /// How it moves.
         direction: FreeDirection,
         /// Ids of a node of that body and of one at the same place that nothing joins to it.
-        beside: Option<[String; 2]>,
+        beside: Option<Box<[String; 2]>>,
     },
     /// The structure stands, but on so small a share of the stiffness of its stiffest part that not even doubled
     /// precision can solve it.

@@ -123,7 +123,7 @@ fn body_of(structure: &Structure, node: usize) -> Option<String> {
 }
 
 /// Ids of a node of a body and of one of another part at the same place, where no contact or tie has the first.
-fn beside(structure: &Structure, body: &str) -> Option<[String; 2]> {
+fn beside(structure: &Structure, body: &str) -> Option<Box<[String; 2]>> {
     let own: BTreeSet<usize> = (structure.elements_of_body(body)?.into_iter())
         .flat_map(|element| structure.elements[element].nodes.iter().copied())
         .collect();
@@ -136,7 +136,7 @@ fn beside(structure: &Structure, body: &str) -> Option<[String; 2]> {
         (0..structure.nodes.len()).filter(|node| !own.contains(node)).map(|node| (place(node), node)).collect();
     let free = own.into_iter().filter(|node| !joined.contains(node));
     let (node, other) = free.filter_map(|node| Some((node, *others.get(&place(node))?))).next()?;
-    Some([node, other].map(|node| structure.nodes[node].id.clone()))
+    Some(Box::new([node, other].map(|node| structure.nodes[node].id.clone())))
 }
 
 /// The node with the largest translation, or rotation where nothing translates.

@@ -123,8 +123,10 @@ pub(super) trait Follower<'a> {
             return Ok(());
         }
         let course = Course { factors: [factors.clone(), factors.clone()], gaps: [gaps.clone(), own] };
-        if let (_, Some((at, _))) = self.along(&course, &|_| 0.0)? {
-            let how = "in a limit: the parts cannot be put together".to_owned();
+        let there = "the share of the interference that is put in";
+        if let (_, Some((at, collapse))) = self.along(&course, &|_| 0.0).map_err(|error| broken_at(error, there))? {
+            let why = if collapse.mode.is_empty() { String::new() } else { format!(" ({})", collapse.mode) };
+            let how = format!("in a limit: the parts cannot be put together{why}");
             return Err(PathError::NoStart { name: "interference".to_owned(), at, how });
         }
         Ok(())
@@ -220,14 +222,17 @@ pub(super) trait Follower<'a> {
     }
 }
 
-/// An error on the way through a stage, by whose number.
-fn in_stage(error: PathError, index: usize) -> PathError {
+/// An error on the way, with what is followed there.
+fn broken_at(error: PathError, name: &str) -> PathError {
     match error {
-        PathError::Breakdown { at, why, .. } => {
-            PathError::Breakdown { name: format!("the place in stage {}", index + 1), at, why }
-        }
+        PathError::Breakdown { at, why, .. } => PathError::Breakdown { name: name.to_owned(), at, why },
         other => other,
     }
+}
+
+/// An error on the way through a stage, by whose number.
+fn in_stage(error: PathError, index: usize) -> PathError {
+    broken_at(error, &format!("the place in stage {}", index + 1))
 }
 
 /// z_τ of a pair after another state: in space the length of a vector.
