@@ -76,7 +76,7 @@ impl Walk<'_> {
     }
 
     /// The motion as a ray, its class, and whether the equilibrium LP just beyond proves it.
-    fn collapse(&self, course: &Course, t: f64, motion: &DVector<f64>, p: f64) -> Result<Ray, PathError> {
+    pub(super) fn collapse(&self, course: &Course, t: f64, motion: &DVector<f64>, p: f64) -> Result<Ray, PathError> {
         let system = &*self.place.laws.problem.system;
         let problem = {
             let at = t + CERTIFIED_AT;

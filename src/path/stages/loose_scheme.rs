@@ -3,10 +3,13 @@
 //! Where pairs open or slip so that a body can move without strain, the equations of the scheme are singular, and what their
 //! rounding makes of them are rates of any size: the load's rate divided by a stiffness that is rounding. Either the motion is
 //! not driven, and its rate is 0 for all that is known, or nothing balances the load's rate and there are no rates.
+//!
+//! A soft spring resists little, but more than rounding does: rates against it are large, and known. How far they may lead is told
+//! by the state at their end ([`super::walk`]).
 
 use nalgebra::DVector;
 
-use super::rate_problem::{RateProblem, Rates, moved, terms};
+use super::rate_problem::{RateProblem, Rates, Resistance, moved, terms};
 use super::released::loose_motions;
 use super::standing::Standing;
 use crate::answer::pairs::JointState;
@@ -14,14 +17,21 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::sum::{HIDDEN, LAW_ROUNDING};
 use crate::lcp::problem::NOISE;
 
+/// The largest part of the load's rate that rounding may hide in rates against little: they are known to two digits then, and
+/// neither their sense nor the limit that they come to first hangs on it.
+const LITTLE: f64 = 1e-2;
+
 impl RateProblem<'_> {
-    /// The motion that the scheme of these rates leaves to itself and that drives them; `None` where all that they obey holds
-    /// without it.
-    pub(super) fn unresisted(&self, standing: &Standing, rates: &Rates) -> Option<DVector<f64>> {
+    /// What resists these rates.
+    pub(super) fn resistance(&self, standing: &Standing, rates: &Rates) -> Resistance {
         let (laws, released) = (self.laws, &self.released);
         let moving = rates.moving.iter().map(|row| moved(laws, *row).0);
         let Some((joints, loose)) = released.loose_with(&laws.problem.system, moving) else {
-            return self.beyond_measure(rates).then(|| rates.z.clone());
+            return match self.hidden(rates) {
+                hidden if hidden <= HIDDEN => Resistance::Clear,
+                hidden if hidden <= LITTLE => Resistance::Little,
+                _ => Resistance::None(rates.z.clone()),
+            };
         };
         let mut motion = DVector::zeros(rates.z.len());
         let part = DVector::from_fn(joints.len(), |at, _| rates.z[joints[at]]);
@@ -36,14 +46,14 @@ impl RateProblem<'_> {
         };
         let is_driven = released.joints.iter().any(|&joint| !balances(&[(joint, 1.0)]))
             || rates.moving.iter().any(|row| !balances(&terms(laws, *row, standing.is_open(row.pair))));
-        is_driven.then_some(motion)
+        // What all that they obey holds without is not driven.
+        if is_driven { Resistance::None(motion) } else { Resistance::Clear }
     }
 
-    /// Whether the terms of the forces that these rates give exceed the load's rate so much that rounding hides it: next to
-    /// nothing resists them.
-    fn beyond_measure(&self, rates: &Rates) -> bool {
+    /// The part of the load's rate that the rounding of the terms of the forces may hide that these rates give.
+    fn hidden(&self, rates: &Rates) -> f64 {
         let sizes = self.laws.force_sizes(&rates.z, self.sizes);
-        LAW_ROUNDING * sizes.amax() > HIDDEN * self.sizes.amax()
+        LAW_ROUNDING * sizes.amax() / self.sizes.amax()
     }
 }
 

@@ -9,6 +9,7 @@
 //! ```
 //! Lemke's algorithm solves it under the covering `cohesive` on its rows.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
@@ -58,8 +59,9 @@ pub(super) struct RateProblem<'a> {
 pub(super) enum Ended {
     /// Rates: constant until the next event.
     Rates(Rates),
-    /// No rates: the motion in which the run ended, over the joints, and its p.
-    Ray { motion: DVector<f64>, p: f64 },
+    /// No rates that a clear stiffness resists: the motion in which the run ended, over the joints, and its p. `little`: rates that
+    /// little resists, where there are such.
+    Ray { motion: DVector<f64>, p: f64, little: Option<Rates> },
     /// Stopped from outside.
     Interrupted,
     /// A limit, or numbers that no longer belong together; says which.
@@ -72,6 +74,16 @@ pub(super) struct Rates {
     pub(super) force: DVector<f64>,
     /// The couples whose z may grow: their x stays 0.
     pub(super) moving: Vec<RowId>,
+}
+
+/// What resists the motion of rates.
+pub(super) enum Resistance {
+    /// A stiffness that is large beside its rounding, wherever they lead to.
+    Clear,
+    /// One that is small but no rounding.
+    Little,
+    /// None, or one that may be rounding: the motion.
+    None(DVector<f64>),
 }
 
 /// The combination of joint forces that is the x of a couple, without its constant.
@@ -131,14 +143,16 @@ impl<'a> RateProblem<'a> {
         if let Some(loose) = self.released.driven_motion(&joints, &self.released.pick(self.sizes)) {
             let mut motion = DVector::zeros(self.rate.len());
             self.released.joints.iter().zip(loose.iter()).for_each(|(&joint, v)| motion[joint] = *v);
-            return (Ended::Ray { motion, p: 0.0 }, run);
+            return (Ended::Ray { motion, p: 0.0, little: None }, run);
         }
+        let soft = RefCell::new(None);
         let found = |z: &[f64], basic: &[usize]| {
             let z: Vec<f64> = z.iter().map(|z| z.max(0.0) * self.contact.length_unit).collect();
             let rates = self.rates(standing, &z, basic);
-            match self.unresisted(standing, &rates) {
-                None => Ok(rates),
-                Some(motion) => Err(motion),
+            match self.resistance(standing, &rates) {
+                Resistance::Clear => Ok(rates),
+                Resistance::Little => Err(soft.borrow_mut().get_or_insert(rates).z.clone()),
+                Resistance::None(motion) => Err(motion),
             }
         };
         let of_run = |run: &Run| found(&run.point.z, &run.pivots.basis().z);
@@ -146,15 +160,16 @@ impl<'a> RateProblem<'a> {
             true => search(&self.contact.lcp, |z, basic| found(z, basic).ok()),
             false => under_other_coverings(&self.contact, watch, |run| of_run(run).ok()),
         };
+        let ray = |motion, p| Ended::Ray { motion, p, little: soft.take() };
         let ended = match &run.outcome {
             Outcome::Trivial | Outcome::Normal { .. } => match of_run(&run) {
                 Ok(rates) => Ended::Rates(rates),
-                Err(motion) => another().map_or(Ended::Ray { motion, p: 0.0 }, Ended::Rates),
+                Err(motion) => another().map_or_else(|| ray(motion, 0.0), Ended::Rates),
             },
-            Outcome::Ray(ray) => another().map_or_else(
+            Outcome::Ray(direction) => another().map_or_else(
                 || {
-                    let motion = self.with_released(&ray.z, &DVector::zeros(self.rate.len()));
-                    Ended::Ray { motion, p: run.point.p * self.contact.force_unit }
+                    let motion = self.with_released(&direction.z, &DVector::zeros(self.rate.len()));
+                    ray(motion, run.point.p * self.contact.force_unit)
                 },
                 Ended::Rates,
             ),

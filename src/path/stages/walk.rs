@@ -11,12 +11,12 @@ use super::follower::{Follower, Limit, Place, Targets, Way, recorded};
 use super::rate_problem::{Ended, RateProblem, Rates};
 use super::record::History;
 use super::standing::{Laws, Normal, Reached, Sense, Standing, joint_scales};
-use crate::answer::check::TOLERANCE;
+use crate::answer::check::{TOLERANCE, check_contact};
 use crate::answer::pairs::{JointState, Shares};
-use crate::answer::record::{PairState, State};
+use crate::answer::record::{PairState, State, Verdict};
 use crate::contact::problem::ContactProblem;
 use crate::contact::rows::{RowId, RowKind};
-use crate::contact::sum::LAW_ROUNDING;
+use crate::contact::sum::{HIDDEN, LAW_ROUNDING};
 use crate::contact::written::ContactLcp;
 use crate::explain::sentence::pivot_records;
 use crate::lcp::outcome::Run;
@@ -30,6 +30,11 @@ use crate::watch::Watch;
 const EVENTS: usize = 100_000;
 /// This many jumps one after the other, with no way between them, lead nowhere: the place is as good as a limit.
 const JUMPS: usize = 20;
+/// A way that is no longer than what is looked ahead by where there is none leads nowhere.
+const SHORT: f64 = 1e-7;
+/// What is said where the loads hide in the rounding of what they move.
+const HIDES: &str = "The loads of this stage could not be followed further: rates lead on, but so little resists them that from \
+                     here rounding hides the loads in the forces of what they move. That the loads cannot be carried is not proved.";
 
 /// The state from which the history goes on.
 pub(super) struct Walk<'a> {
@@ -47,6 +52,8 @@ enum Stretch {
     Event(f64),
     /// No rates lead on from here.
     End { motion: DVector<f64>, p: f64 },
+    /// Rates lead on, but so little resists that rounding hides the loads from here.
+    Hidden { motion: DVector<f64>, p: f64 },
 }
 
 impl<'a> Walk<'a> {
@@ -104,15 +111,30 @@ impl<'a> Walk<'a> {
         self.lemke_seconds += start.elapsed().as_secs_f64();
         way.pivots += run.pivots.count();
         self.last_run = Some((run, problem.contact.clone()));
-        let rates = match ended {
-            Ended::Rates(rates) => rates,
-            Ended::Ray { motion, p } => return Ok(Stretch::End { motion, p }),
+        let (rates, end) = match ended {
+            Ended::Rates(rates) => (rates, None),
+            Ended::Ray { motion, p, little: Some(rates) } => (rates, Some((motion, p))),
+            Ended::Ray { motion, p, little: None } => return Ok(Stretch::End { motion, p }),
             Ended::Interrupted => return Err(PathError::Interrupted),
             Ended::Breakdown(why) => return Err(breakdown(t, &why)),
         };
         let (step, mut now) = next_event(self.place.laws, &self.standing, &rates, (sizes, 1.0 - t));
         // Likewise where the last digits of the place hide the way that is left.
-        let to = if step >= 1.0 - t - LAW_ROUNDING { 1.0 } else { t + step };
+        let mut to = if step >= 1.0 - t - LAW_ROUNDING { 1.0 } else { t + step };
+        if let Some((motion, p)) = end {
+            let until = self.clear_until(course, &rates, (t, to));
+            let is_back = to == t && now.iter().all(|limit| reached.contains(limit));
+            if is_back || self.collapse(course, t, &motion, p)?.verdict == Some(Verdict::Certified) {
+                return Ok(Stretch::End { motion, p });
+            }
+            if until < to && until - t <= SHORT {
+                return Ok(Stretch::Hidden { motion, p });
+            }
+            if until < to {
+                to = until;
+                now.clear();
+            }
+        }
         if to == t {
             // Nothing has moved: what was reached stays reached.
             now.retain(|limit| !reached.contains(limit));
@@ -127,6 +149,24 @@ impl<'a> Walk<'a> {
         *reached = now;
         way.moments.push(self.moment(to, false));
         Ok(Stretch::Event(to))
+    }
+
+    /// Up to where rates that little resists lead: to the place at which the rounding of what they move begins to hide the loads.
+    fn clear_until(&self, course: &Course, rates: &Rates, (t, to): (f64, f64)) -> f64 {
+        let hides = |at: f64| {
+            let problem = self.problem_at(&course.factors_at(at), &course.gaps_at(at));
+            let mut there = JointState::at(&problem, &self.standing.z + &rates.z * (at - t), 0.0);
+            // What a stage ends in is checked with the terms of the largest displacements met beside its own.
+            let sizes = self.place.laws.force_sizes(&there.z, &course.sizes_at(&self.place.laws.problem.system, at));
+            there.terms += sizes.zip_map(self.standing.force_sizes(), f64::max);
+            check_contact(&problem, &there, None).hidden > HIDDEN
+        };
+        let (mut clear, mut hidden) = if hides(to) { (t, to) } else { return to };
+        while hidden - clear > LAW_ROUNDING {
+            let middle = clear.midpoint(hidden);
+            *if hides(middle) { &mut hidden } else { &mut clear } = middle;
+        }
+        clear
     }
 
     /// Goes on at the given rates.
@@ -312,6 +352,16 @@ impl<'a> Follower<'a> for Walk<'a> {
                         to
                     }
                     Err(collapse) => return Ok((way, Some((t, collapse)))),
+                },
+                // Where there are rates nothing jumps.
+                Stretch::Hidden { motion, p } => match self.beyond(course, t, (&motion, p, false), &mut way)? {
+                    Ok(to) => to,
+                    Err(mut collapse) => {
+                        if !collapse.verdict.is_some_and(Verdict::is_proof) {
+                            HIDES.clone_into(&mut collapse.explanation);
+                        }
+                        return Ok((way, Some((t, collapse))));
+                    }
                 },
             };
             if to > t {

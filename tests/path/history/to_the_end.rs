@@ -232,3 +232,48 @@ fn gaps_that_widen_while_they_are_open_hide_no_ratchet() {
     let widest = (0..stages[10].end.pairs.len()).map(wider).fold(0.0, f64::max);
     near("gap", found.turns.last().expect("a cycle").gap_growth, widest, 1e-9, widest);
 }
+
+/// Two stones on rough ground, joined by a stiff spring, the first on a soft one: pulled until both slide. What resists the sliding is
+/// 1e-9 of the stiffness between them, and exact. Beyond the friction of both the soft spring carries the pull, so that they slide by
+/// as much as it exceeds that; back from there both hold until the pull has fallen by twice the friction of the first. Pulled
+/// farther, to where rounding may be 1e-4 of the loads, they stop on the same way.
+#[test]
+fn little_resists_but_it_is_no_rounding() {
+    let spring = |at: &str, direction: [f64; 2], stiffness: f64| json!({ "at": at, "direction": direction, "stiffness": stiffness });
+    let point = |at: &str, force: [f64; 2]| json!({ "point": { "at": at, "force": force } });
+    let contact = |node: &str, friction: f64| json!({ "id": format!("on-{node}"), "node": node, "against": "ground", "normal": [0, 1], "friction": friction });
+    let of = |stiff: f64, farthest: f64| {
+        Case::json(json!({
+            "nodes": { "m0": [0, 0], "m1": [1, 0] },
+            "springs": [
+                spring("m0", [1.0, 0.0], 1.0), { "between": ["m0", "m1"], "direction": [1, 0], "stiffness": stiff },
+                spring("m0", [0.0, 1.0], 1e3), spring("m1", [0.0, 1.0], 1e3)
+            ],
+            "contacts": [contact("m0", 0.5), contact("m1", 0.25)],
+            "loads": {
+                "weight": { "items": [point("m0", [0.0, -1.0]), point("m1", [0.0, -2.0])] },
+                "pull": { "items": [point("m0", [1.0, 0.0])] }
+            },
+            "stages": [{ "weight": 1 }, { "weight": 1, "pull": farthest }, { "weight": 1, "pull": 0.95 }]
+        }))
+    };
+    for stiff in [1e6, 1e9, 3e9] {
+        let history = followed(&of(stiff, 1.05));
+        assert_eq!(history.end, HistoryEnd::Complete);
+        assert!(history.stages.iter().flat_map(|stage| &stage.moments).all(|moment| !moment.jump));
+        for stage in &history.stages[1..] {
+            let [first, second] = [0, 1].map(|pair| stage.end.pairs[pair].z_t);
+            // The terms of the forces are `stiff` times the slips: so much of the pull is their rounding.
+            near("first", first, 0.05, 1e-15 * stiff, 1.0);
+            near("between", first - second, 0.5 / stiff, 1e-15, 1.0);
+            assert!(stage.moments.len() <= 4, "{}", stage.moments.len());
+        }
+    }
+    let history = followed(&of(1e9, 3.0));
+    let HistoryEnd::Limit { stage: 1, t, .. } = &history.end else { panic!("{:?}", history.end) };
+    let stage = &history.stages[1];
+    near("slid", stage.end.pairs[0].z_t, 3.0 * t - 1.0, 1e-6, 1.0);
+    // A force is summed from 2e9 z, and judged by twice that, beside a largest load of 2, to 1024 ε of it.
+    near("until", stage.end.pairs[0].z_t, 1e-4 * 2.0 / (4e9 * 1024.0 * f64::EPSILON), 0.01, 1.0);
+    assert!(stage.moments.len() <= 6 && stage.moments.iter().all(|moment| !moment.jump), "{}", stage.moments.len());
+}
