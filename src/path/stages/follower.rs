@@ -10,7 +10,7 @@ use super::integrals::Integrals;
 use super::record::{History, HistoryEnd, Moment, StageResult};
 use super::standing::Laws;
 use crate::answer::pairs::JointState;
-use crate::answer::record::{OutcomeKind, PairState, Ray, State, Verdict};
+use crate::answer::record::{OutcomeKind, PairState, Ray, RayClass, State, Verdict};
 use crate::contact::problem::ContactProblem;
 use crate::path::change::{between, sentence, with_directions};
 use crate::path::start::PathError;
@@ -125,7 +125,8 @@ pub(super) trait Follower<'a> {
         let course = Course { factors: [factors.clone(), factors.clone()], gaps: [gaps.clone(), own] };
         let there = "the share of the interference that is put in";
         if let (_, Some((at, collapse))) = self.along(&course, &|_| 0.0).map_err(|error| broken_at(error, there))? {
-            let why = if collapse.mode.is_empty() { String::new() } else { format!(" ({})", collapse.mode) };
+            let why =
+                if collapse.class == RayClass::Mechanism { format!(" ({})", collapse.mode) } else { String::new() };
             let how = format!("in a limit: the parts cannot be put together{why}");
             return Err(PathError::NoStart { name: "interference".to_owned(), at, how });
         }
