@@ -184,3 +184,36 @@ fn a_block_that_fills_its_walls_again_does_not_jump() {
         near(&pair.id, pair.z_n.abs() + pair.z_t.abs(), 0.0, 1e-12, cold.max_slip());
     }
 }
+
+/// A bar on two feet under ceilings that it never touches, on a spring along it, pushed by P until both feet slide (f N = 0.3 each) and
+/// to the other side: z = ±(P − 0.6) / k. Floor and ceiling of a node repeat one another; at the second foot's limit the run under
+/// the default covering ended in a ray for some divisions of the bar, and the history was given up.
+#[test]
+fn ceilings_that_are_never_touched_end_no_history() {
+    for (divisions, stiffness) in [(1, 3.0), (3, 3.0), (4, 30.0), (6, 10.0)] {
+        let contact = |id: &str, node: &str, up: f64, gap: f64| json!({ "id": id, "node": node, "against": "ground", "normal": [0, up], "friction": 0.3, "gap": gap });
+        let weight = |at: &str| json!({ "point": { "at": at, "force": [0, -1] } });
+        let push = 1.0;
+        let found = followed(json!({
+            "materials": { "steel": { "E": 2e7, "nu": 0.3 } },
+            "sections": { "s": { "area": 0.01, "inertia": 0.0001 } },
+            "nodes": { "n0": [0, 0], "n1": [2, 0] },
+            "bars": [{ "id": "b", "nodes": ["n0", "n1"], "material": "steel", "section": "s", "divisions": divisions }],
+            "springs": [{ "at": "n0", "direction": [1, 0], "stiffness": stiffness }],
+            "contacts": [
+                contact("u0", "n0", 1.0, 0.0), contact("o0", "n0", -1.0, 0.001),
+                contact("u1", "n1", 1.0, 0.0), contact("o1", "n1", -1.0, 0.001)
+            ],
+            "loads": {
+                "w": { "items": [weight("n0"), weight("n1")] },
+                "p": { "items": [{ "point": { "at": "n0", "force": [push, 0] } }] }
+            },
+            "stages": [{ "w": 1 }, { "w": 1, "p": 1 }, { "w": 1, "p": 0 }, { "w": 1, "p": -1 }]
+        }));
+        assert_eq!(found.end, HistoryEnd::Complete, "{divisions} {stiffness}");
+        let slips = [1, 3].map(|stage: usize| found.stages[stage].end.pairs[0].z_t);
+        let expected = (push - 0.6) / stiffness;
+        near("there", slips[0], expected, 1e-9, expected);
+        near("back", slips[1], -expected, 1e-9, expected);
+    }
+}

@@ -22,17 +22,21 @@ use crate::answer::check::{TOLERANCE, check_contact};
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{PairState, Ray, State};
 use crate::contact::at_rest::AtRest;
+use crate::contact::lcp::contact_lcp;
 use crate::contact::load_path::{is_answer, path_lcp};
 use crate::contact::problem::ContactProblem;
 use crate::contact::written::ContactLcp;
 use crate::explain::ray;
+use crate::lcp::basis::Basis;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::parametric::{Parametric, Reach};
 use crate::lcp::problem::NOISE;
 use crate::lcp::variable::Variable;
+use crate::model::rules::Covering;
 use crate::path::cone_step::behind_slips;
 use crate::path::start::{PathError, cold, state_of};
 use crate::solve::Prepared;
+use crate::solve::engines::under_other_coverings;
 use crate::watch::Watch;
 
 /// No stage has more events than this.
@@ -186,30 +190,64 @@ impl ForcedWalk<'_> {
             };
             jump = passes(&problem, &found.contact, &found.point)
                 .then(|| (to, Box::new(found.contact.clone()), found.point.clone()));
-            if !is_answer(&path.lcp, basis) {
-                continue;
+            match self.onward(&here, &path, basis, (t, has_jumped), way) {
+                Some(event @ Ahead::Event(..)) => return Ok(event),
+                other => elsewhere = other.or(elsewhere),
             }
-            let Some(mut engine) = Parametric::new(Arc::clone(&path.lcp), basis, path.lexicographic_order()) else {
-                continue;
-            };
-            let start = engine.point();
-            if !has_jumped && !self.is_here(&here, &path, &start) {
-                if passes(&here, &path, &start) {
-                    elsewhere = Some(Ahead::Jump(t, Box::new(path.clone()), start));
-                }
-                continue;
-            }
-            let reach = Reach { target: 1.0 - t, through: false, pivots: PIVOTS };
-            let followed = engine.follow(reach, &mut |_| self.place.watch.go_on());
-            way.pivots += followed.pivots;
-            if let Some(knot) = followed.knots.iter().find(|knot| knot.t > HERE) {
-                let to = if knot.t >= 1.0 - t - HERE { 1.0 } else { t + knot.t };
-                let point = Point { p: 0.0, ..knot.point.clone() };
-                return Ok(Ahead::Event(to, Box::new(path), point));
-            }
+        }
+        if let Some(event) = self.under_drawn_coverings(course, (&here, &path), (t, has_jumped), way) {
+            return Ok(event);
         }
         let jump = jump.map(|(to, contact, point)| Ahead::Jump(to, contact, point));
         Ok(elsewhere.or(jump).unwrap_or(Ahead::Limit(limit)))
+    }
+
+    /// The next event after t, where the runs of other coverings a little ahead find a scheme that leads on from here. In joints
+    /// that repeat one another the matrix is not one that a run under a given covering must solve: it may end in a ray, or at
+    /// an answer far off, where another run ends at the state that goes on.
+    fn under_drawn_coverings(
+        &self,
+        course: &Course,
+        (here, path): (&ContactProblem, &ContactLcp),
+        (t, has_jumped): (f64, bool),
+        way: &mut Way,
+    ) -> Option<Ahead> {
+        AHEAD.iter().find_map(|step| {
+            let to = (t + step).min(1.0);
+            let problem = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
+            let contact = contact_lcp(&problem, Covering::Cohesive).ok()?;
+            under_other_coverings(&contact, self.place.watch, |run| {
+                let found = self.onward(here, path, &run.pivots.basis(), (t, has_jumped), way);
+                found.filter(|ahead| matches!(ahead, Ahead::Event(..)))
+            })
+        })
+    }
+
+    /// Where the scheme of a basis leads from t on: to the next event, or, unless it `has_jumped` to where it is, to another
+    /// state at t.
+    fn onward(
+        &self,
+        here: &ContactProblem,
+        path: &ContactLcp,
+        basis: &Basis,
+        (t, has_jumped): (f64, bool),
+        way: &mut Way,
+    ) -> Option<Ahead> {
+        if !is_answer(&path.lcp, basis) {
+            return None;
+        }
+        let mut engine = Parametric::new(Arc::clone(&path.lcp), basis, path.lexicographic_order())?;
+        let start = engine.point();
+        if !has_jumped && !self.is_here(here, path, &start) {
+            return passes(here, path, &start).then(|| Ahead::Jump(t, Box::new(path.clone()), start));
+        }
+        let reach = Reach { target: 1.0 - t, through: false, pivots: PIVOTS };
+        let followed = engine.follow(reach, &mut |_| self.place.watch.go_on());
+        way.pivots += followed.pivots;
+        let knot = followed.knots.iter().find(|knot| knot.t > HERE)?;
+        let to = if knot.t >= 1.0 - t - HERE { 1.0 } else { t + knot.t };
+        let point = Point { p: 0.0, ..knot.point.clone() };
+        Some(Ahead::Event(to, Box::new(path.clone()), point))
     }
 
     /// The collapse at place t of a stage, from the ray met just beyond it.
