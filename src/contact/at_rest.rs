@@ -24,13 +24,11 @@ use super::sum::Sum;
 use super::sums::{joint_forces, known_to};
 use super::system::ContactSystem;
 use super::yielding::FELT;
-use crate::lcp::linear_program::{LinearProgram, Outcome};
+use crate::lcp::linear_program::{LinearProgram, Outcome, TOLERANCE};
 use crate::watch::Watch;
 use stickslip_numerics::least_norm::least_norm;
 
-/// The program is exact to this share of the largest force.
-const EXACT: f64 = 1e-9;
-/// Room, as a share of the largest force, that forces of least norm keep in every law.
+/// Room, as a share of the largest force, that forces of least norm keep in every law: the program is exact to [`TOLERANCE`].
 const ROOM: f64 = 1e-7;
 /// Corrections of what has to be 0 exactly: each gains all digits of the numbers at hand.
 const CORRECTIONS: usize = 2;
@@ -242,7 +240,8 @@ impl Laws<'_> {
             let (law, tangents) = (&self.exact.laws[i], self.pairs[i].tangents.clone());
             let pressed = if self.open[i] { 0.0 } else { carried[i] };
             let along = tangents.map(|joint| carried[joint] * carried[joint]).sum::<f64>().sqrt();
-            (law.is_bilateral() || pressed >= -EXACT * unit) && along <= law.bound(pressed.max(0.0)) + EXACT * unit
+            (law.is_bilateral() || pressed >= -TOLERANCE * unit)
+                && along <= law.bound(pressed.max(0.0)) + TOLERANCE * unit
         })
     }
 
@@ -259,7 +258,7 @@ impl Laws<'_> {
             carried += self.stress * least_norm(&rows, &left)?;
         }
         // More is left where no self-stress of all takes it away.
-        let is_idle = idle.iter().all(|&joint| carried[joint].abs() <= EXACT * size);
+        let is_idle = idle.iter().all(|&joint| carried[joint].abs() <= TOLERANCE * size);
         idle.iter().for_each(|&joint| carried[joint] = 0.0);
         is_idle.then_some(carried)
     }

@@ -7,7 +7,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
 /// Feasibility and gap of a solution, relative.
-const TOLERANCE: f64 = 1e-9;
+pub const TOLERANCE: f64 = 1e-9;
 /// A refinement looks this far around the point that it refines, in the magnified unknowns.
 const RANGE: f64 = 1e3;
 

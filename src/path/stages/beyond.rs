@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::course::Course;
 use super::follower::{Follower, Way};
 use super::loose_scheme::without_loose_motion;
-use super::walk::Walk;
+use super::walk::{LONGEST_LOOK, Walk};
 use crate::answer::check::check_contact;
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{PairState, Ray, State, Verdict};
@@ -25,7 +25,7 @@ use crate::solve::engines::under_other_coverings;
 const CERTIFIED_AT: f64 = 1e-6;
 /// Where no rates lead on, states are looked for these parts of a stage further on: a stiffness near to singular, and
 /// displacements far out, may hide the nearest in their rounding.
-const BEYOND: [f64; 3] = [1e-9, 1e-8, 1e-7];
+const BEYOND: [f64; 3] = [1e-9, 1e-8, LONGEST_LOOK];
 /// A look this many times as far ahead …
 const FARTHER: f64 = 16.0;
 /// … shows less than this many times the motion where it is a jump.

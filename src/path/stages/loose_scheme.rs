@@ -7,7 +7,7 @@
 //! A soft spring resists little, but more than rounding does: rates against it are large, and known. How far they may lead is told
 //! by the state at their end ([`super::walk`]).
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::rate_problem::{RateProblem, Rates, Resistance, moved, terms};
 use super::released::loose_motions;
@@ -33,10 +33,7 @@ impl RateProblem<'_> {
                 _ => Resistance::None(rates.z.clone()),
             };
         };
-        let mut motion = DVector::zeros(rates.z.len());
-        let part = DVector::from_fn(joints.len(), |at, _| rates.z[joints[at]]);
-        let along = &loose * loose.tr_mul(&part);
-        joints.iter().zip(along.iter()).for_each(|(&joint, rate)| motion[joint] = *rate);
+        let motion = part_along(&loose, &joints, &rates.z);
         let z = &rates.z - &motion;
         let (force, sizes) = (laws.force(&z, self.rate), laws.force_sizes(&z, self.sizes));
         let balances = |terms: &[(usize, f64)]| {
@@ -57,6 +54,14 @@ impl RateProblem<'_> {
     }
 }
 
+/// The part of z along orthonormal motions of some joints alone.
+fn part_along(loose: &DMatrix<f64>, joints: &[usize], z: &DVector<f64>) -> DVector<f64> {
+    let part = DVector::from_fn(joints.len(), |at, _| z[joints[at]]);
+    let mut along = DVector::zeros(z.len());
+    joints.iter().zip((loose * loose.tr_mul(&part)).iter()).for_each(|(&joint, moved)| along[joint] = *moved);
+    along
+}
+
 /// A state with the forces that it has without the motion of the kernel that its scheme leaves to itself; `None` where there is no
 /// such motion.
 ///
@@ -74,9 +79,6 @@ pub(super) fn without_loose_motion(problem: &ContactProblem, state: &JointState)
     if loose.ncols() == 0 {
         return None;
     }
-    let mut z = state.z.clone();
-    let part = DVector::from_fn(joints.len(), |at, _| z[joints[at]]);
-    let along = &loose * loose.tr_mul(&part);
-    joints.iter().zip(along.iter()).for_each(|(&joint, motion)| z[joint] -= motion);
+    let z = &state.z - part_along(&loose, &joints, &state.z);
     Some(JointState { z: state.z.clone(), ..JointState::at(problem, z, 0.0) })
 }

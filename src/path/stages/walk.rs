@@ -30,8 +30,8 @@ use crate::watch::Watch;
 const EVENTS: usize = 100_000;
 /// This many jumps one after the other, with no way between them, lead nowhere: the place is as good as a limit.
 const JUMPS: usize = 20;
-/// A way that is no longer than what is looked ahead by where there is none leads nowhere.
-const SHORT: f64 = 1e-7;
+/// The farthest place, as a part of the stage, at which a state is looked for where no rates lead on.
+pub(super) const LONGEST_LOOK: f64 = 1e-7;
 /// What is said where the loads hide in the rounding of what they move.
 const HIDES: &str = "The loads of this stage could not be followed further: rates lead on, but so little resists them that from \
                      here rounding hides the loads in the forces of what they move. That the loads cannot be carried is not proved.";
@@ -127,7 +127,8 @@ impl<'a> Walk<'a> {
             if is_back || self.collapse(course, t, &motion, p)?.verdict == Some(Verdict::Certified) {
                 return Ok(Stretch::End { motion, p });
             }
-            if until < to && until - t <= SHORT {
+            // A way that is no longer than what is looked ahead by where there is none leads nowhere.
+            if until < to && until - t <= LONGEST_LOOK {
                 return Ok(Stretch::Hidden { motion, p });
             }
             if until < to {
