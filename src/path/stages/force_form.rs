@@ -195,16 +195,17 @@ impl ForcedWalk<'_> {
                 other => elsewhere = other.or(elsewhere),
             }
         }
-        if let Some(event) = self.under_drawn_coverings(course, (&here, &path), (t, has_jumped), way) {
-            return Ok(event);
-        }
         let jump = jump.map(|(to, contact, point)| Ahead::Jump(to, contact, point));
-        Ok(elsewhere.or(jump).unwrap_or(Ahead::Limit(limit)))
+        let drawn = match self.under_drawn_coverings(course, (&here, &path), (t, has_jumped), way) {
+            Some(event @ Ahead::Event(..)) => return Ok(event),
+            drawn => drawn,
+        };
+        Ok(elsewhere.or(jump).or(drawn).unwrap_or(Ahead::Limit(limit)))
     }
 
-    /// The next event after t, where the runs of other coverings a little ahead find a scheme that leads on from here. In joints
-    /// that repeat one another the matrix is not one that a run under a given covering must solve: it may end in a ray, or at
-    /// an answer far off, where another run ends at the state that goes on.
+    /// The next event after t, where the runs of other coverings a little ahead find a scheme that leads on from here; else the jump
+    /// to the nearest state that they find the least ahead. In joints that repeat one another the matrix is not one that a run under
+    /// a given covering must solve: it may end in a ray, or at an answer far off, where another run ends at the state that goes on.
     fn under_drawn_coverings(
         &self,
         course: &Course,
@@ -212,15 +213,27 @@ impl ForcedWalk<'_> {
         (t, has_jumped): (f64, bool),
         way: &mut Way,
     ) -> Option<Ahead> {
-        AHEAD.iter().find_map(|step| {
+        let mut nearest: Option<(f64, Ahead)> = None;
+        let still = &self.state.z - &self.slips;
+        let event = AHEAD.iter().find_map(|step| {
             let to = (t + step).min(1.0);
             let problem = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
             let contact = contact_lcp(&problem, Covering::Cohesive).ok()?;
+            nearest = None;
             under_other_coverings(&contact, self.place.watch, |run| {
-                let found = self.onward(here, path, &run.pivots.basis(), (t, has_jumped), way);
-                found.filter(|ahead| matches!(ahead, Ahead::Event(..)))
+                let event = self.onward(here, path, &run.pivots.basis(), (t, has_jumped), way);
+                let event = event.filter(|ahead| matches!(ahead, Ahead::Event(..)));
+                let motion = (&state_of(&problem, &contact, &run.point).z - &still).amax();
+                if event.is_none()
+                    && nearest.as_ref().is_none_or(|(least, _)| motion < *least)
+                    && passes(&problem, &contact, &run.point)
+                {
+                    nearest = Some((motion, Ahead::Jump(to, Box::new(contact.clone()), run.point.clone())));
+                }
+                event
             })
-        })
+        });
+        event.or(nearest.map(|(_, jump)| jump))
     }
 
     /// Where the scheme of a basis leads from t on: to the next event, or, unless it `has_jumped` to where it is, to another
