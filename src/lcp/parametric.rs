@@ -307,7 +307,16 @@ impl Parametric {
             scheme: self.scheme.iter().copied().collect(),
         }]);
         let (end, pivots) = self.run(reach, &mut knots, observer);
-        Path { knots: knots.unwrap_or_default(), end, pivots }
+        let mut knots = knots.unwrap_or_default();
+        if !reach.through {
+            // A path that ends at turning points never falls: events that come at one place are told apart by rounding.
+            let mut reached: f64 = 0.0;
+            for knot in &mut knots {
+                reached = reached.max(knot.t);
+                knot.t = reached;
+            }
+        }
+        Path { knots, end, pivots }
     }
 
     /// As [`Parametric::follow`], without a record of the way: only its end and the number of pivots.

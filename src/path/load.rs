@@ -229,11 +229,13 @@ impl LoadPath {
         Ok(())
     }
 
-    /// The sign of the last change of the factor, which falls beyond a turning point.
+    /// The sign of the last change of the factor, which falls beyond a turning point: from the last knot that is not only
+    /// by rounding away from the end. The last events of a path often come at one place, told apart by rounding alone.
     fn last_rise(&self) -> f64 {
-        let steps = self.path.knots.windows(2).map(|ends| ends[1].t - ends[0].t);
-        let last = steps.rev().find(|step| *step != 0.0).unwrap_or(1.0);
-        self.sign * last.signum()
+        let Some((&end, before)) = self.factors.split_last() else { return self.sign };
+        let rounding = NOISE * size(end, self.parameter.present);
+        let last = before.iter().rev().map(|factor| end - factor).find(|change| change.abs() > rounding);
+        last.map_or(self.sign, f64::signum)
     }
 
     /// The LCP the path runs in and the row names of its points.

@@ -41,7 +41,7 @@ pub enum End {
 pub struct Breakpoint {
     /// t.
     pub t: f64,
-    /// All variables there, computed afresh from the data; its `p` is t.
+    /// All variables there, computed afresh from the data; its `p` is t, or less by rounding.
     pub point: Point,
     /// What reached zero here, one after the other.
     pub leaving: Vec<Variable>,
