@@ -19,6 +19,7 @@
 pub mod at_rest;
 pub mod cone;
 pub mod cone_rates;
+pub mod felt_part;
 pub mod file_data;
 pub mod force_form;
 pub mod full_lcp;

@@ -147,6 +147,8 @@ pub(crate) struct Cold {
     pub(crate) contact: ContactLcp,
     /// `None` where the run ended in no answer.
     pub(crate) basis: Option<Basis>,
+    /// That of the end of the run, whatever it is.
+    pub(crate) last: Basis,
     pub(crate) point: Point,
     pub(crate) outcome: Outcome,
     pub(crate) pivots: usize,
@@ -177,12 +179,13 @@ pub(crate) fn cold(problem: &ContactProblem, watch: &dyn Watch) -> Result<Cold, 
     // The default covering fits all numbers.
     let contact = contact_lcp(problem, Covering::Cohesive).map_err(|error| PathError::Target(error.to_string()))?;
     let run = run_past_cycles(&contact, watch);
+    let last = run.pivots.basis();
     let basis = match run.outcome {
         Outcome::Interrupted => return Err(PathError::Interrupted),
-        Outcome::Trivial | Outcome::Normal { marginal: false } => Some(run.pivots.basis()),
+        Outcome::Trivial | Outcome::Normal { marginal: false } => Some(last.clone()),
         _ => None,
     };
-    Ok(Cold { contact, basis, point: run.point, outcome: run.outcome, pivots: run.pivots.count() })
+    Ok(Cold { contact, basis, last, point: run.point, outcome: run.outcome, pivots: run.pivots.count() })
 }
 
 /// The final scheme of a solved state; `None` where it is no answer, or one that only just is (marginal).

@@ -187,10 +187,11 @@ fn a_block_that_fills_its_walls_again_does_not_jump() {
 
 /// A bar on two feet under ceilings that it never touches, on a spring along it, pushed by P until both feet slide (f N = 0.3 each) and
 /// to the other side: z = ±(P − 0.6) / k. Floor and ceiling of a node repeat one another; at the second foot's limit the run under
-/// the default covering ended in a ray for some divisions of the bar, and the history was given up.
+/// the default covering ended in a ray for some divisions of the bar, and the history was given up; or what the slips before had left by
+/// rounding was taken for a jump.
 #[test]
 fn ceilings_that_are_never_touched_end_no_history() {
-    for (divisions, stiffness) in [(1, 3.0), (3, 3.0), (4, 30.0), (6, 10.0)] {
+    for (divisions, stiffness) in [(1, 3.0), (2, 30.0), (2, 1.0), (4, 1.0), (6, 10.0)] {
         let contact = |id: &str, node: &str, up: f64, gap: f64| json!({ "id": id, "node": node, "against": "ground", "normal": [0, up], "friction": 0.3, "gap": gap });
         let weight = |at: &str| json!({ "point": { "at": at, "force": [0, -1] } });
         let push = 1.0;
@@ -215,14 +216,25 @@ fn ceilings_that_are_never_touched_end_no_history() {
         let expected = (push - 0.6) / stiffness;
         near("there", slips[0], expected, 1e-9, expected);
         near("back", slips[1], -expected, 1e-9, expected);
+        assert!(
+            found.stages.iter().flat_map(|stage| &stage.moments).all(|moment| !moment.jump),
+            "{divisions} {stiffness}"
+        );
     }
 }
 
 /// A slab on rough ground, W = 20 and f = 0.5, with a stop 2 before one of its feet, pushed by 10 = f W and more: it slides all the
 /// way to the stop at once, which takes f W · 2 = 20 of the work besides what little the slab slipped before, and stands there.
 /// The foot's slip and the gap of the stop repeat one another; under the default covering no run found the state at the stop.
+/// With f = 1.4 its first feet lift before it slides, and no run found it under any covering.
 #[test]
 fn what_slides_to_a_stop_jumps_there() {
+    for friction in [0.5, 1.4] {
+        slides_to_its_stop(friction);
+    }
+}
+
+fn slides_to_its_stop(friction: f64) {
     let found = followed(json!({
         "materials": { "stiff": { "E": 30, "nu": 0.2 } },
         "plates": [{
@@ -230,7 +242,7 @@ fn what_slides_to_a_stop_jumps_there() {
             "plane": "stress"
         }],
         "contacts": [
-            { "id": "bed", "edge": "slab.bottom", "against": "ground", "friction": 0.5 },
+            { "id": "bed", "edge": "slab.bottom", "against": "ground", "friction": friction },
             { "id": "stop", "node": "slab[4,0]", "against": "ground", "normal": [-1, 0], "friction": 0, "gap": 2 }
         ],
         "loads": {
@@ -246,5 +258,5 @@ fn what_slides_to_a_stop_jumps_there() {
     assert_eq!(of("stop").z_n, 0.0);
     near("slip", of("bed[4]").z_t, 2.0, 1e-12, 2.0);
     // The slab is 30 · 1000 · 400 stiff along 2000: 30 of push shorten it by 0.005.
-    near("lost", stage.dissipated, 20.0, 0.005, 20.0);
+    near("lost", stage.dissipated, friction * 20.0 * 2.0, 0.005, 20.0);
 }

@@ -22,19 +22,22 @@ use crate::answer::check::{TOLERANCE, check_contact};
 use crate::answer::pairs::{JointState, pair_states};
 use crate::answer::record::{PairState, Ray, State};
 use crate::contact::at_rest::AtRest;
+use crate::contact::felt_part::{FeltPart, Scheme};
+use crate::contact::force_form::unknowns;
 use crate::contact::lcp::contact_lcp;
-use crate::contact::load_path::{is_answer, path_lcp};
+use crate::contact::load_path::{obeys_signs, path_lcp};
 use crate::contact::problem::ContactProblem;
 use crate::contact::written::ContactLcp;
 use crate::explain::ray;
 use crate::lcp::basis::Basis;
+use crate::lcp::basis_solution::vertex;
 use crate::lcp::outcome::{Point, RayDirection};
 use crate::lcp::parametric::{Parametric, Reach};
 use crate::lcp::problem::NOISE;
 use crate::lcp::variable::Variable;
 use crate::model::rules::Covering;
 use crate::path::cone_step::behind_slips;
-use crate::path::start::{PathError, cold, state_of};
+use crate::path::start::{Cold, PathError, cold, state_of};
 use crate::solve::Prepared;
 use crate::solve::engines::under_other_coverings;
 use crate::watch::Watch;
@@ -196,11 +199,83 @@ impl ForcedWalk<'_> {
             }
         }
         let jump = jump.map(|(to, contact, point)| Ahead::Jump(to, contact, point));
+        let felt = match self.in_felt_part(course, (&here, &path), (t, has_jumped), way)? {
+            Some(event @ Ahead::Event(..)) => return Ok(event),
+            felt => felt,
+        };
         let drawn = match self.under_drawn_coverings(course, (&here, &path), (t, has_jumped), way) {
             Some(event @ Ahead::Event(..)) => return Ok(event),
             drawn => drawn,
         };
-        Ok(elsewhere.or(jump).or(drawn).unwrap_or(Ahead::Limit(limit)))
+        Ok(elsewhere.or(jump).or(felt).or(drawn).unwrap_or(Ahead::Limit(limit)))
+    }
+
+    /// The next event after t, where a scheme of the joints that can carry something leads on from here ([`FeltPart`]). Where they
+    /// collapse, the jump to where their motion closes an open pair, if that is a state a little ahead.
+    fn in_felt_part(
+        &self,
+        course: &Course,
+        (here, path): (&ContactProblem, &ContactLcp),
+        (t, has_jumped): (f64, bool),
+        way: &mut Way,
+    ) -> Result<Option<Ahead>, PathError> {
+        let Some(part) = self.felt_part() else { return Ok(None) };
+        let mut jump = None;
+        for step in AHEAD {
+            let to = (t + step).min(1.0);
+            let whole = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
+            let problem = part.problem(&whole);
+            let found = cold(&problem, self.place.watch)?;
+            let Some(basis) = &found.basis else {
+                let met = self.where_it_closes(&part, (&whole, &problem), &found);
+                jump = met.map(|(contact, point)| Ahead::Jump(to, Box::new(contact), point)).or(jump);
+                continue;
+            };
+            let unknowns = unknowns(&problem.system, Some(&problem), &found.contact, &found.point.z);
+            let scheme = Scheme { contact: &found.contact, basis, unknowns: &unknowns };
+            let basis = part.spread((&whole, path), scheme);
+            match self.onward(here, path, &basis, (t, has_jumped), way) {
+                Some(event @ Ahead::Event(..)) => return Ok(Some(event)),
+                other => jump = other.or(jump),
+            }
+        }
+        Ok(jump)
+    }
+
+    /// The part of the joints that can carry something in the present state.
+    fn felt_part(&self) -> Option<FeltPart> {
+        let Laws { problem } = self.place.laws;
+        let mut nothing = vec![false; problem.system.joint_count()];
+        for (i, (pair, law)) in problem.system.pairs.iter().zip(&problem.laws).enumerate() {
+            let (open, bare) = (!law.is_bilateral() && self.state.z[i] > 0.0, law.fixed_bound() == 0.0);
+            nothing[i] = open && bare;
+            if let Some(joint) = pair.plane_tangential() {
+                nothing[joint] = bare && (open || law.friction() == 0.0);
+            }
+        }
+        FeltPart::new(&problem.system, &nothing)
+    }
+
+    /// The state in which a collapse of the part ends where it closes an open pair, if it passes the check of an answer.
+    fn where_it_closes(
+        &self,
+        part: &FeltPart,
+        (whole, problem): (&ContactProblem, &ContactProblem),
+        found: &Cold,
+    ) -> Option<(ContactLcp, Point)> {
+        let ray = found.ray()?;
+        let mut basis = found.last.clone();
+        match ray.entering {
+            Variable::Z(row) => basis.z.push(row),
+            Variable::W(row) => basis.active.retain(|own| *own != row),
+            Variable::P => return None,
+        }
+        let unknowns = unknowns(&problem.system, None, &found.contact, &ray.z);
+        let collapse = Scheme { contact: &found.contact, basis: &basis, unknowns: &unknowns };
+        let contact = path_lcp(whole, &whole.load);
+        let basis = part.closed_by_collapse((whole, &contact), collapse, &self.state.z)?;
+        let point = vertex(&contact.lcp, &basis).filter(|point| passes(whole, &contact, point))?;
+        Some((contact, point))
     }
 
     /// The next event after t, where the runs of other coverings a little ahead find a scheme that leads on from here; else the jump
@@ -246,9 +321,13 @@ impl ForcedWalk<'_> {
         (t, has_jumped): (f64, bool),
         way: &mut Way,
     ) -> Option<Ahead> {
-        if !is_answer(&path.lcp, basis) {
-            return None;
-        }
+        // Beside what moved before, a displacement from here on may be rounding; force takes none for another.
+        let still = |variable| match variable {
+            Variable::Z(row) if !path.swapped[row] => TOLERANCE * self.largest / path.length_unit,
+            Variable::W(row) if path.swapped[row] => TOLERANCE * self.largest / path.length_unit,
+            _ => 0.0,
+        };
+        vertex(&path.lcp, basis).filter(|point| obeys_signs(&path.lcp, point, &still))?;
         let mut engine = Parametric::new(Arc::clone(&path.lcp), basis, path.lexicographic_order())?;
         let start = engine.point();
         if !has_jumped && !self.is_here(here, path, &start) {
