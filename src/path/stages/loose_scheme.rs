@@ -9,7 +9,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::rate_problem::{RateProblem, Rates, Resistance, moved, terms};
+use super::rate_problem::{RateProblem, Rates, Resistance, terms};
 use super::released::loose_motions;
 use super::standing::Standing;
 use crate::answer::pairs::JointState;
@@ -25,8 +25,7 @@ impl RateProblem<'_> {
     /// What resists these rates.
     pub(super) fn resistance(&self, standing: &Standing, rates: &Rates) -> Resistance {
         let (laws, released) = (self.laws, &self.released);
-        let moving = rates.moving.iter().map(|row| moved(laws, *row).0);
-        let Some((joints, loose)) = released.loose_with(&laws.problem.system, moving) else {
+        let Some((joints, loose)) = self.loose_of(released, &rates.moving) else {
             return match self.hidden(rates) {
                 hidden if hidden <= HIDDEN => Resistance::Clear,
                 hidden if hidden <= LITTLE => Resistance::Little,
@@ -55,7 +54,7 @@ impl RateProblem<'_> {
 }
 
 /// The part of z along orthonormal motions of some joints alone.
-fn part_along(loose: &DMatrix<f64>, joints: &[usize], z: &DVector<f64>) -> DVector<f64> {
+pub(super) fn part_along(loose: &DMatrix<f64>, joints: &[usize], z: &DVector<f64>) -> DVector<f64> {
     let part = DVector::from_fn(joints.len(), |at, _| z[joints[at]]);
     let mut along = DVector::zeros(z.len());
     joints.iter().zip((loose * loose.tr_mul(&part)).iter()).for_each(|(&joint, moved)| along[joint] = *moved);

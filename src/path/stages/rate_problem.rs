@@ -15,6 +15,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::condensed::Condensed;
+use super::loose_scheme::part_along;
 use super::released::Released;
 use super::standing::{Laws, Normal, Sense, Standing, Tangential, joint_scales};
 use crate::contact::polygon::Polygon;
@@ -197,10 +198,33 @@ impl<'a> RateProblem<'a> {
     fn rates(&self, standing: &Standing, rows: &[f64], basic: &[usize]) -> Rates {
         let moving: Vec<RowId> = basic.iter().map(|&row| self.contact.rows[row]).collect();
         let mut z = self.with_released(rows, self.rate);
+        let found = z.clone();
         self.correct(standing, &moving, &[], &mut z, self.rate, |_| 0.0);
+        if (&z - &found).amax() > HIDDEN * z.amax()
+            && let Some(determined) = self.determined(&moving, &z)
+        {
+            z = determined;
+        }
         let mut force = self.laws.force(&z, self.rate);
         self.settle(standing, &moving, &mut force, |_| 0.0);
         Rates { z, force, moving }
+    }
+
+    /// Rates without their part along the motions that cost no energy and that these couples leave to themselves: nothing tells how
+    /// large that is, and what the numbers make of it is a division by rounding. `None` where there are no such motions, or where
+    /// couples would move backwards without.
+    fn determined(&self, moving: &[RowId], z: &DVector<f64>) -> Option<DVector<f64>> {
+        let (joints, loose) = self.loose_of(&self.released, moving)?;
+        let rest = z - part_along(&loose, &joints, z);
+        let noise = self.laws.length_sizes(&joint_scales(&self.laws.problem.system), &rest) * NOISE;
+        let mut couples = moving.iter().map(|meaning| moved(self.laws, *meaning));
+        couples.all(|(joint, sign)| sign * rest[joint] >= -noise[joint]).then_some(rest)
+    }
+
+    /// The motions that cost no energy of the released joints and those that these couples move, and these joints; `None` where the
+    /// couples add none to those of the released ones.
+    pub(super) fn loose_of(&self, released: &Released, moving: &[RowId]) -> Option<(Vec<usize>, DMatrix<f64>)> {
+        released.loose_with(&self.laws.problem.system, moving.iter().map(|meaning| moved(self.laws, *meaning).0))
     }
 
     /// Sets to their exact values the forces that the laws give: 0 in released joints, ∓ bound where a pair slips;
@@ -265,6 +289,12 @@ impl<'a> RateProblem<'a> {
         }
         let follow = released.solve(&released.pick(&self.laws.force(&own, &force)));
         released.joints.iter().zip(follow.iter()).for_each(|(&joint, v)| own[joint] = -v);
+        // Along motions that cost no energy the equations say nothing: what is no rounding there was divided by rounding.
+        if own.amax() > HIDDEN * z.amax()
+            && let Some((joints, loose)) = self.loose_of(released, moving)
+        {
+            own -= part_along(&loose, &joints, &own);
+        }
         *z += own;
     }
 

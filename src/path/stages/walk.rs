@@ -205,6 +205,13 @@ impl<'a> Walk<'a> {
                 "the forces of the laws are not those of the displacements that the rates lead to",
             ));
         }
+        let lengths = laws.length_sizes(&joint_scales(system), &z) * TOLERANCE;
+        if let Some(pair) =
+            system.pairs.iter().enumerate().position(|(i, pair)| !pair.law.is_bilateral() && z[i] < -lengths[i])
+        {
+            let why = format!("the bodies of pair {} would overlap where the rates lead to", system.pairs[pair].id);
+            return Err(breakdown(t, &why));
+        }
         self.place.way = self.way_of(rates);
         for meaning in &rates.moving {
             let sense = match meaning.couple {
