@@ -65,10 +65,24 @@ struct ForcedWalk<'a> {
     largest: f64,
 }
 
+/// A place from which a way is looked for.
+struct Here<'h> {
+    course: &'h Course,
+    /// The place, as a part of the stage.
+    t: f64,
+    /// Whether what stands there was jumped to.
+    has_jumped: bool,
+    /// The problem there beyond the committed slips, and its LCP along the load's rate.
+    problem: ContactProblem,
+    path: ContactLcp,
+}
+
 /// What lies ahead of a place.
 enum Ahead {
     /// The next event: its place, the LCP, the point.
     Event(f64, Box<ContactLcp>, Point),
+    /// Likewise, but what the scheme leads to fails its check.
+    Doubtful(f64, Box<ContactLcp>, Point),
     /// A state here or a little further on that no scheme leads to from here.
     Jump(f64, Box<ContactLcp>, Point),
     /// Nothing: the ray of the nearest look ahead.
@@ -169,8 +183,8 @@ impl ForcedWalk<'_> {
         (&there.z - &still).amax() <= TOLERANCE * self.largest.max((&there.z + &self.slips).amax())
     }
 
-    /// The next event after t, found from the scheme a little ahead. Unless it `has_jumped` to where it is, an answer at t
-    /// that is another state is jumped to.
+    /// The next event, found from the scheme a little ahead. Unless what stands here was jumped to, an answer here that is another
+    /// state is jumped to.
     fn ahead(
         &self,
         course: &Course,
@@ -178,12 +192,13 @@ impl ForcedWalk<'_> {
         (t, has_jumped): (f64, bool),
         way: &mut Way,
     ) -> Result<Ahead, PathError> {
-        let here = self.beyond_slips(&course.factors_at(t), &course.gaps_at(t));
-        let path = path_lcp(&here, rate);
+        let problem = self.beyond_slips(&course.factors_at(t), &course.gaps_at(t));
+        let path = path_lcp(&problem, rate);
+        let here = Here { course, t, has_jumped, problem, path };
         let (mut jump, mut limit, mut elsewhere) = (None, None, None);
+        let is_doubtful = |ahead: &Ahead| matches!(ahead, Ahead::Doubtful(..));
         for step in AHEAD {
-            let to = (t + step).min(1.0);
-            let problem = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
+            let (to, problem) = self.a_little_ahead(&here, step);
             let found = cold(&problem, self.place.watch)?;
             let Some(basis) = &found.basis else {
                 let p = found.point.p * found.contact.force_unit;
@@ -193,37 +208,44 @@ impl ForcedWalk<'_> {
             };
             jump = passes(&problem, &found.contact, &found.point)
                 .then(|| (to, Box::new(found.contact.clone()), found.point.clone()));
-            match self.onward(&here, &path, basis, (t, has_jumped), way) {
+            match self.onward(&here, basis, way) {
                 Some(event @ Ahead::Event(..)) => return Ok(event),
                 other => elsewhere = other.or(elsewhere),
             }
         }
         let jump = jump.map(|(to, contact, point)| Ahead::Jump(to, contact, point));
-        let felt = match self.in_felt_part(course, (&here, &path), (t, has_jumped), way)? {
+        let felt = match self.in_felt_part(&here, way)? {
             Some(event @ Ahead::Event(..)) => return Ok(event),
             felt => felt,
         };
-        let drawn = match self.under_drawn_coverings(course, (&here, &path), (t, has_jumped), way) {
+        let drawn = match self.under_drawn_coverings(&here, way) {
             Some(event @ Ahead::Event(..)) => return Ok(event),
             drawn => drawn,
         };
-        Ok(elsewhere.or(jump).or(felt).or(drawn).unwrap_or(Ahead::Limit(limit)))
+        // What fails its check comes after all that passes it.
+        let found = [elsewhere, jump, felt, drawn].into_iter().flatten();
+        let (doubtful, passing): (Vec<Ahead>, Vec<Ahead>) = found.partition(is_doubtful);
+        Ok(passing.into_iter().chain(doubtful).next().unwrap_or(Ahead::Limit(limit)))
+    }
+
+    /// The place a step of a stage further on, and the problem there.
+    fn a_little_ahead(&self, here: &Here<'_>, step: f64) -> (f64, ContactProblem) {
+        let to = (here.t + step).min(1.0);
+        (to, self.problem_behind(here.course, to))
+    }
+
+    /// The problem at a place of a stage beyond the committed slips.
+    fn problem_behind(&self, course: &Course, to: f64) -> ContactProblem {
+        self.beyond_slips(&course.factors_at(to), &course.gaps_at(to))
     }
 
     /// The next event after t, where a scheme of the joints that can carry something leads on from here ([`FeltPart`]). Where they
     /// collapse, the jump to where their motion closes an open pair, if that is a state a little ahead.
-    fn in_felt_part(
-        &self,
-        course: &Course,
-        (here, path): (&ContactProblem, &ContactLcp),
-        (t, has_jumped): (f64, bool),
-        way: &mut Way,
-    ) -> Result<Option<Ahead>, PathError> {
+    fn in_felt_part(&self, here: &Here<'_>, way: &mut Way) -> Result<Option<Ahead>, PathError> {
         let Some(part) = self.felt_part() else { return Ok(None) };
         let mut jump = None;
         for step in AHEAD {
-            let to = (t + step).min(1.0);
-            let whole = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
+            let (to, whole) = self.a_little_ahead(here, step);
             let problem = part.problem(&whole);
             let found = cold(&problem, self.place.watch)?;
             let Some(basis) = &found.basis else {
@@ -233,8 +255,8 @@ impl ForcedWalk<'_> {
             };
             let unknowns = unknowns(&problem.system, Some(&problem), &found.contact, &found.point.z);
             let scheme = Scheme { contact: &found.contact, basis, unknowns: &unknowns };
-            let basis = part.spread((&whole, path), scheme);
-            match self.onward(here, path, &basis, (t, has_jumped), way) {
+            let basis = part.spread((&whole, &here.path), scheme);
+            match self.onward(here, &basis, way) {
                 Some(event @ Ahead::Event(..)) => return Ok(Some(event)),
                 other => jump = other.or(jump),
             }
@@ -281,22 +303,15 @@ impl ForcedWalk<'_> {
     /// The next event after t, where the runs of other coverings a little ahead find a scheme that leads on from here; else the jump
     /// to the nearest state that they find the least ahead. In joints that repeat one another the matrix is not one that a run under
     /// a given covering must solve: it may end in a ray, or at an answer far off, where another run ends at the state that goes on.
-    fn under_drawn_coverings(
-        &self,
-        course: &Course,
-        (here, path): (&ContactProblem, &ContactLcp),
-        (t, has_jumped): (f64, bool),
-        way: &mut Way,
-    ) -> Option<Ahead> {
+    fn under_drawn_coverings(&self, here: &Here<'_>, way: &mut Way) -> Option<Ahead> {
         let mut nearest: Option<(f64, Ahead)> = None;
         let still = &self.state.z - &self.slips;
         let event = AHEAD.iter().find_map(|step| {
-            let to = (t + step).min(1.0);
-            let problem = self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
+            let (to, problem) = self.a_little_ahead(here, *step);
             let contact = contact_lcp(&problem, Covering::Cohesive).ok()?;
             nearest = None;
             under_other_coverings(&contact, self.place.watch, |run| {
-                let event = self.onward(here, path, &run.pivots.basis(), (t, has_jumped), way);
+                let event = self.onward(here, &run.pivots.basis(), way);
                 let event = event.filter(|ahead| matches!(ahead, Ahead::Event(..)));
                 let motion = (&state_of(&problem, &contact, &run.point).z - &still).amax();
                 if event.is_none()
@@ -311,16 +326,10 @@ impl ForcedWalk<'_> {
         event.or(nearest.map(|(_, jump)| jump))
     }
 
-    /// Where the scheme of a basis leads from t on: to the next event, or, unless it `has_jumped` to where it is, to another
-    /// state at t.
-    fn onward(
-        &self,
-        here: &ContactProblem,
-        path: &ContactLcp,
-        basis: &Basis,
-        (t, has_jumped): (f64, bool),
-        way: &mut Way,
-    ) -> Option<Ahead> {
+    /// Where the scheme of a basis leads from here on: to the next event, or, unless what stands here was jumped to, to another
+    /// state here.
+    fn onward(&self, here: &Here<'_>, basis: &Basis, way: &mut Way) -> Option<Ahead> {
+        let Here { course, t, has_jumped, problem, path } = here;
         // Beside what moved before, a displacement from here on may be rounding; force takes none for another.
         let still = |variable| match variable {
             Variable::Z(row) if !path.swapped[row] => TOLERANCE * self.largest / path.length_unit,
@@ -330,8 +339,8 @@ impl ForcedWalk<'_> {
         vertex(&path.lcp, basis).filter(|point| obeys_signs(&path.lcp, point, &still))?;
         let mut engine = Parametric::new(Arc::clone(&path.lcp), basis, path.lexicographic_order())?;
         let start = engine.point();
-        if !has_jumped && !self.is_here(here, path, &start) {
-            return passes(here, path, &start).then(|| Ahead::Jump(t, Box::new(path.clone()), start));
+        if !has_jumped && !self.is_here(problem, path, &start) {
+            return passes(problem, path, &start).then(|| Ahead::Jump(*t, Box::new(path.clone()), start));
         }
         let reach = Reach { target: 1.0 - t, through: false, pivots: PIVOTS };
         let followed = engine.follow(reach, &mut |_| self.place.watch.go_on());
@@ -339,7 +348,9 @@ impl ForcedWalk<'_> {
         let knot = followed.knots.iter().find(|knot| knot.t > HERE)?;
         let to = if knot.t >= 1.0 - t - HERE { 1.0 } else { t + knot.t };
         let point = Point { p: 0.0, ..knot.point.clone() };
-        Some(Ahead::Event(to, Box::new(path.clone()), point))
+        let is_state = passes(&self.problem_behind(course, to), path, &point);
+        let kind = if is_state { Ahead::Event } else { Ahead::Doubtful };
+        Some(kind(to, Box::new(path.clone()), point))
     }
 
     /// The collapse at place t of a stage, from the ray met just beyond it.
@@ -410,7 +421,7 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
             if events > EVENTS {
                 return Err(breakdown(t, &format!("the limit of {EVENTS} events in a stage was reached")));
             }
-            let behind = |to: f64| self.beyond_slips(&course.factors_at(to), &course.gaps_at(to));
+            let behind = |to: f64| self.problem_behind(course, to);
             let passes = |to: f64, found: &AtRest| {
                 let problem = behind(to);
                 check_contact(&problem, &JointState::at_rest(&problem, found.clone()), None).passed
@@ -427,7 +438,9 @@ impl<'a> Follower<'a> for ForcedWalk<'a> {
                     way.rest([t, to]);
                     (to, path_lcp(&behind(to), &rate), Ok(found), false)
                 }
-                (Ahead::Event(to, contact, point), None) => (to, *contact, Err(point), false),
+                (Ahead::Event(to, contact, point) | Ahead::Doubtful(to, contact, point), None) => {
+                    (to, *contact, Err(point), false)
+                }
                 (Ahead::Jump(to, contact, point), None) => (to, *contact, Err(point), true),
                 (Ahead::Limit(ray), None) => return Ok((way, Some((t, self.collapse(course, t, ray))))),
             };
