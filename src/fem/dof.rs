@@ -81,19 +81,19 @@ impl Dofs {
 
     /// Displacements per node, in the order of [`Component::ALL`], from base dofs; 0 where there is none.
     pub fn scatter<T: Real>(&self, u: &[T]) -> Vec<[T; 6]> {
-        let value = |node: usize, component| self.of(node, component).map_or(T::zero(), |dof| u[dof]);
-        (0..self.has.len()).map(|node| Component::ALL.map(|component| value(node, component))).collect()
+        let of_node = |(has, &first): (&[bool; 6], &u32)| {
+            let mut own = u[first as usize..].iter();
+            has.map(|has| if has { own.next().copied().unwrap_or(T::zero()) } else { T::zero() })
+        };
+        self.has.iter().zip(&self.first).map(of_node).collect()
     }
 
     /// Base dofs from displacements per node.
     pub fn gather<T: Real>(&self, u: &[[T; 6]]) -> Vec<T> {
         let mut base = vec![T::zero(); self.count];
-        for (node, values) in u.iter().enumerate() {
-            for (component, value) in Component::ALL.into_iter().zip(values) {
-                if let Some(dof) = self.of(node, component) {
-                    base[dof] = *value;
-                }
-            }
+        for ((has, &first), values) in self.has.iter().zip(&self.first).zip(u) {
+            let own = values.iter().zip(has).filter(|(_, has)| **has);
+            base[first as usize..].iter_mut().zip(own).for_each(|(base, (value, _))| *base = *value);
         }
         base
     }

@@ -60,6 +60,11 @@ pub struct Elimination {
     joints: usize,
 }
 
+/// The entries of a part of a sum.
+fn entries(part: &[(u32, f64)]) -> impl Iterator<Item = (usize, f64)> + '_ {
+    part.iter().map(|&(at, a)| (at as usize, a))
+}
+
 impl Elimination {
     /// The joints that repeat others.
     ///
@@ -235,25 +240,23 @@ impl Elimination {
         }
     }
 
+    /// The sum that a base dof is; `None` where it is held or a single unknown.
+    fn sum(&self, dof: usize) -> Option<&Sum> {
+        match self.rows[dof] {
+            Row::Sum(sum) => Some(&self.sums[sum as usize]),
+            Row::Held(_) | Row::Free(_) => None,
+        }
+    }
+
     /// Entries of a row of T: (index into v, coefficient).
     pub fn free_terms(&self, dof: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let (single, sum) = match &self.rows[dof] {
-            Row::Held(_) => (None, None),
-            Row::Free(v) => (Some((*v as usize, 1.0)), None),
-            Row::Sum(sum) => (None, Some(&self.sums[*sum as usize])),
-        };
-        let many = sum.into_iter().flat_map(|sum| &sum.free);
-        single.into_iter().chain(many.map(|&(v, a)| (v as usize, a)))
+        let single = self.single(dof).map(|v| (v, 1.0));
+        single.into_iter().chain(entries(self.sum(dof).map_or(&[], |sum| &sum.free)))
     }
 
     /// Entries of a row of G: (joint, coefficient).
     pub fn joint_terms(&self, dof: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let sum = match &self.rows[dof] {
-            Row::Sum(sum) => Some(&self.sums[*sum as usize]),
-            _ => None,
-        };
-        let many = sum.into_iter().flat_map(|sum| &sum.joints);
-        many.map(|&(j, a)| (j as usize, a))
+        entries(self.sum(dof).map_or(&[], |sum| &sum.joints))
     }
 
     /// The idle spins that are held.
@@ -268,12 +271,7 @@ impl Elimination {
 
     /// Entries of a row of G_A: (row of a body, coefficient).
     pub fn body_terms(&self, dof: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let sum = match &self.rows[dof] {
-            Row::Sum(sum) => Some(&self.sums[*sum as usize]),
-            _ => None,
-        };
-        let many = sum.into_iter().flat_map(|sum| &sum.bodies);
-        many.map(|&(row, a)| (row as usize, a))
+        entries(self.sum(dof).map_or(&[], |sum| &sum.bodies))
     }
 
     /// Number of the imposed displacement of a base dof, if a support that settles holds it.
@@ -297,13 +295,17 @@ impl Elimination {
 
     /// T v + G z on the base dofs.
     pub fn expand<T: Real>(&self, v: &[T], z: &[f64]) -> Vec<T> {
-        let sum = |sum: T, term: T| sum + term;
-        (0..self.rows.len())
-            .map(|dof| {
-                let own = self.free_terms(dof).map(|(i, a)| T::from(a) * v[i]).fold(T::zero(), sum);
-                self.joint_terms(dof).map(|(j, a)| T::from(a) * T::from(z[j])).fold(own, sum)
-            })
-            .collect()
+        let add = |sum: T, term: T| sum + term;
+        let of = |row: &Row| match row {
+            Row::Held(_) => T::zero(),
+            Row::Free(i) => v[*i as usize],
+            Row::Sum(sum) => {
+                let sum = &self.sums[*sum as usize];
+                let own = sum.free.iter().map(|&(i, a)| T::from(a) * v[i as usize]).fold(T::zero(), add);
+                sum.joints.iter().map(|&(j, a)| T::from(a) * T::from(z[j as usize])).fold(own, add)
+            }
+        };
+        self.rows.iter().map(of).collect()
     }
 
     /// The magnitudes of the terms that T v + G z is the sum of, on the base dofs, where it is `u`; `z` are those of the joints.
