@@ -243,8 +243,8 @@ fn the_most_of_a_tilt_lies_where_answers_end_before_what_is_proved() {
 /// by rounding on the way does not turn the look beyond the end around.
 #[test]
 fn the_look_beyond_a_limit_goes_the_way_of_the_load() {
-    let feet = [[-0.1233, 0.0], [2.743, 0.0], [6.283, 0.0]];
-    let heads = [[-0.1233, 3.105], [2.743, 2.902], [6.283, 2.864]];
+    let feet = [[-0.1233, 0.0], [2.743, 0.0], [6.29, 0.0]];
+    let heads = [[-0.1233, 3.105], [2.743, 2.902], [6.29, 2.864]];
     let bars =
         [[feet[0], heads[0]], [feet[1], heads[1]], [feet[2], heads[2]], [heads[0], heads[1]], [heads[1], heads[2]]];
     let push = [-3.296, -4.853];

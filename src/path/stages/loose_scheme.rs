@@ -7,10 +7,10 @@
 //! A soft spring resists little, but more than rounding does: rates against it are large, and known. How far they may lead is told
 //! by the state at their end ([`super::walk`]).
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::rate_problem::{RateProblem, Rates, Resistance, terms};
-use super::released::loose_motions;
+use super::released::{loose_motions, part_along};
 use super::standing::Standing;
 use crate::answer::pairs::JointState;
 use crate::contact::problem::ContactProblem;
@@ -51,14 +51,6 @@ impl RateProblem<'_> {
         let sizes = self.laws.force_sizes(&rates.z, self.sizes);
         LAW_ROUNDING * sizes.amax() / self.sizes.amax()
     }
-}
-
-/// The part of z along orthonormal motions of some joints alone.
-pub(super) fn part_along(loose: &DMatrix<f64>, joints: &[usize], z: &DVector<f64>) -> DVector<f64> {
-    let part = DVector::from_fn(joints.len(), |at, _| z[joints[at]]);
-    let mut along = DVector::zeros(z.len());
-    joints.iter().zip((loose * loose.tr_mul(&part)).iter()).for_each(|(&joint, moved)| along[joint] = *moved);
-    along
 }
 
 /// A state with the forces that it has without the motion of the kernel that its scheme leaves to itself; `None` where there is no

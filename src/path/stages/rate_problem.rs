@@ -15,8 +15,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::condensed::Condensed;
-use super::loose_scheme::part_along;
-use super::released::Released;
+use super::released::{Released, part_along};
 use super::standing::{Laws, Normal, Sense, Standing, Tangential, joint_scales};
 use crate::contact::polygon::Polygon;
 use crate::contact::rows::{RowId, RowKind};

@@ -74,6 +74,14 @@ impl Released {
     }
 }
 
+/// The part of z along orthonormal motions of some joints alone.
+pub(super) fn part_along(loose: &DMatrix<f64>, joints: &[usize], z: &DVector<f64>) -> DVector<f64> {
+    let part = DVector::from_fn(joints.len(), |at, _| z[joints[at]]);
+    let mut along = DVector::zeros(z.len());
+    joints.iter().zip((loose * loose.tr_mul(&part)).iter()).for_each(|(&joint, moved)| along[joint] = *moved);
+    along
+}
+
 /// Combinations of the kernel of R that move no joint but the given ones, over these; orthonormal.
 pub(in crate::path) fn loose_motions(system: &ContactSystem, joints: &[usize]) -> DMatrix<f64> {
     let kernel = &system.kernel;
