@@ -33,6 +33,21 @@ fn help_begins_with_the_pane() {
 }
 
 #[test]
+fn a_search_that_ends_in_another_pane_stays_within_its_rows() {
+    let mut rig = Rig::new("beam", 100, 30);
+    let (pairs, parameters) = (rig.state.shown.pairs().len(), rig.state.shown.values.len());
+    assert!(parameters < pairs, "{parameters} {pairs}");
+    rig.press(&["3"]);
+    rig.state.pair = pairs - 1;
+    rig.press(&["/"]);
+    while rig.state.focus != Pane::Parameters {
+        rig.act(Action::Do(Do::PreviousPane));
+    }
+    rig.press(&["enter"]);
+    assert!(rig.state.parameter < parameters, "{}", rig.state.parameter);
+}
+
+#[test]
 fn search_finds_rows_in_every_list() {
     let mut rig = Rig::new("plates-free", 100, 30);
     let pairs = rig.state.shown.pairs().len();

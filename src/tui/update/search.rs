@@ -125,6 +125,8 @@ pub(super) fn go(state: &mut State, row: usize) -> Vec<Effect> {
             return Vec::new();
         }
     }
+    // The pane may be another one than that in which the search began, by a click: a row that it has.
+    let row = row.min(rows(state).len().saturating_sub(1));
     match state.focus {
         Pane::Parameters => state.parameter = row,
         Pane::Pairs | Pane::Structure if state.shown.moment.solution.is_some() => state.pair = row,
