@@ -196,7 +196,6 @@ impl ForcedWalk<'_> {
         let path = path_lcp(&problem, rate);
         let here = Here { course, t, has_jumped, problem, path };
         let (mut jump, mut limit, mut elsewhere) = (None, None, None);
-        let is_doubtful = |ahead: &Ahead| matches!(ahead, Ahead::Doubtful(..));
         for step in AHEAD {
             let (to, problem) = self.a_little_ahead(&here, step);
             let found = cold(&problem, self.place.watch)?;
@@ -210,7 +209,7 @@ impl ForcedWalk<'_> {
                 .then(|| (to, Box::new(found.contact.clone()), found.point.clone()));
             match self.onward(&here, basis, way) {
                 Some(event @ Ahead::Event(..)) => return Ok(event),
-                other => elsewhere = other.or(elsewhere),
+                other => elsewhere = later(other, elsewhere),
             }
         }
         let jump = jump.map(|(to, contact, point)| Ahead::Jump(to, contact, point));
@@ -223,9 +222,8 @@ impl ForcedWalk<'_> {
             drawn => drawn,
         };
         // What fails its check comes after all that passes it.
-        let found = [elsewhere, jump, felt, drawn].into_iter().flatten();
-        let (doubtful, passing): (Vec<Ahead>, Vec<Ahead>) = found.partition(is_doubtful);
-        Ok(passing.into_iter().chain(doubtful).next().unwrap_or(Ahead::Limit(limit)))
+        let found = [drawn, felt, jump, elsewhere].into_iter().fold(None, |found, other| later(other, found));
+        Ok(found.unwrap_or(Ahead::Limit(limit)))
     }
 
     /// The place a step of a stage further on, and the problem there.
@@ -258,7 +256,7 @@ impl ForcedWalk<'_> {
             let basis = part.spread((&whole, &here.path), scheme);
             match self.onward(here, &basis, way) {
                 Some(event @ Ahead::Event(..)) => return Ok(Some(event)),
-                other => jump = other.or(jump),
+                other => jump = later(other, jump),
             }
         }
         Ok(jump)
@@ -371,6 +369,14 @@ impl ForcedWalk<'_> {
         let mut collapse = ray::report(&problem, self.place.prepared.built(), &contact, &direction, p);
         collapse.explanation = explanation(&collapse).to_owned();
         collapse
+    }
+}
+
+/// The later of two ways on, unless it leads to what fails its check and the other does not.
+fn later(other: Option<Ahead>, before: Option<Ahead>) -> Option<Ahead> {
+    match (&other, &before) {
+        (Some(Ahead::Doubtful(..)), Some(Ahead::Jump(..))) => before,
+        _ => other.or(before),
     }
 }
 
