@@ -56,7 +56,7 @@ pub struct Envelope {
 /// No answer to start from; see [`PathError`].
 pub fn envelope(case: Case<'_>, axes: &[Axis], quantities: &[Quantity]) -> Result<Envelope, PathError> {
     if let ([axis], true) = (axes, quantities.iter().all(Quantity::is_of_state))
-        && let Some(route) = Route::new(case, &axis.name, axis.range)?
+        && let Some(route) = Route::over_all(case, &axis.name, axis.range)?
     {
         return on_route(&route, axis, quantities);
     }
@@ -90,15 +90,18 @@ fn on_route(route: &Route<'_>, axis: &Axis, quantities: &[Quantity]) -> Result<E
         }
         Ok(peaks)
     };
+    let peaks: Vec<Peaks> = quantities.iter().map(of).collect::<Result<_, _>>()?;
     let [low, high] = route.covered();
     let mut notes: Vec<String> = route.notes();
     notes.extend(quantities.iter().filter_map(|quantity| route.doubt(quantity)));
+    let places = peaks.iter().flatten().flatten().map(|peak| peak.at[0]);
+    notes.extend(route.other_answer(places.chain(axis.range))?);
     if low > axis.range[0] || high < axis.range[1] {
         let [low, high] = [low, high].map(short);
         notes.insert(0, format!("over {} from {low} to {high} only, as far as the path leads", axis.name));
     }
     Ok(Envelope {
-        peaks: quantities.iter().map(of).collect::<Result<_, _>>()?,
+        peaks,
         exact: quantities.iter().all(|quantity| route.is_exact(quantity)),
         covered: Some(route.covered()),
         notes,

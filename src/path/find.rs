@@ -9,17 +9,38 @@ use super::route::Route;
 use super::start::PathError;
 use crate::model::quantity::Quantity;
 use crate::solve::Case;
+use crate::text::number::short;
 
 /// Intervals into which a range is cut where there is no exact path.
 pub const CELLS: usize = 40;
+/// Changes that are narrowed within one of them at most: more are rounding around the wanted number.
+const CHANGES: usize = 8;
 /// A bracket between answers is narrowed to this share of its place.
 const NARROW: f64 = 1e-10;
+
+/// In so many parts of a path a run of its own is made to find out whether there are other answers.
+const LOOKED_AT: usize = 8;
+
+/// How a quantity is to compare with a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// `<`
+    Less,
+    /// `<=`
+    AtMost,
+    /// `=`
+    Equal,
+    /// `>=`
+    AtLeast,
+    /// `>`
+    Greater,
+}
 
 /// What is asked of a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wanted {
-    /// It is less than a number, equal to it, or greater.
-    Compared(std::cmp::Ordering, f64),
+    /// It compares so with a number.
+    Compared(Order, f64),
     /// It is this word; `answer` stands for trivial and normal.
     Word(String),
 }
@@ -73,17 +94,23 @@ fn side(wanted: &Wanted, value: Option<&Value>, size: f64) -> Option<i8> {
 
 impl Wanted {
     fn holds(&self, side: Option<i8>) -> bool {
-        use std::cmp::Ordering::{Equal, Greater, Less};
-        match (self, side) {
-            (_, None) => false,
-            (Wanted::Word(_) | Wanted::Compared(Greater, _), Some(side)) => side > 0,
-            (Wanted::Compared(Less, _), Some(side)) => side < 0,
-            (Wanted::Compared(Equal, _), Some(side)) => side == 0,
+        let Some(side) = side else { return false };
+        match self {
+            Wanted::Word(_) | Wanted::Compared(Order::Greater, _) => side > 0,
+            Wanted::Compared(Order::Less, _) => side < 0,
+            Wanted::Compared(Order::Equal, _) => side == 0,
+            Wanted::Compared(Order::AtMost, _) => side <= 0,
+            Wanted::Compared(Order::AtLeast, _) => side >= 0,
         }
     }
 
     fn is_equality(&self) -> bool {
-        matches!(self, Wanted::Compared(std::cmp::Ordering::Equal, _))
+        matches!(self, Wanted::Compared(Order::Equal, _))
+    }
+
+    /// Whether it may hold at a single value, where the quantity only just meets the number.
+    fn holds_where_met(&self) -> bool {
+        matches!(self, Wanted::Compared(Order::AtMost | Order::AtLeast, _))
     }
 }
 
@@ -107,7 +134,7 @@ pub fn find(
     quantity: &Quantity,
     wanted: &Wanted,
 ) -> Result<Found, PathError> {
-    let route = if quantity.is_of_state() { Route::new(case, name, range)? } else { None };
+    let route = if quantity.is_of_state() { Route::over_all(case, name, range)? } else { None };
     match route {
         Some(route) => on_route(&route, range, quantity, wanted),
         None => on_grid(case, name, range, quantity, wanted),
@@ -118,6 +145,9 @@ fn on_route(route: &Route<'_>, range: [f64; 2], quantity: &Quantity, wanted: &Wa
     let mut parts: Vec<Part> = Vec::new();
     for piece in profile(route, quantity)? {
         let (from, to) = (piece.stretch.from, piece.stretch.to);
+        if let Some(end) = parts.last().map(|part| part.to).filter(|end| *end < from) {
+            parts.push(Part { from: end, to: from, side: None, ends: [None, None] });
+        }
         match piece.shape {
             Shape::Nothing => parts.push(Part { from, to, side: None, ends: [None, None] }),
             Shape::Steady(value) => {
@@ -168,24 +198,46 @@ fn on_route(route: &Route<'_>, range: [f64; 2], quantity: &Quantity, wanted: &Wa
         found.notes.push("the path does not lead through the whole range".to_owned());
     }
     found.notes.extend(route.doubt(quantity));
+    found.notes.extend(route.other_answer(middles(&found))?);
     Ok(found)
+}
+
+/// The middles of the first parts between the places.
+fn middles(found: &Found) -> Vec<f64> {
+    let [low, high] = found.covered;
+    let ends: Vec<f64> =
+        std::iter::once(low).chain(found.places.iter().map(|place| place.value)).chain([high]).collect();
+    ends.windows(2).filter(|two| two[0] < two[1]).map(|two| 0.5 * (two[0] + two[1])).take(LOOKED_AT).collect()
 }
 
 /// Intervals and places from the parts, in order.
 fn gather(parts: &[Part], wanted: &Wanted, place: impl Fn(f64) -> Place) -> Found {
-    let mut holds: Vec<[f64; 2]> = Vec::new();
+    let mut intervals: Vec<[f64; 2]> = Vec::new();
     for part in parts.iter().filter(|part| wanted.holds(part.side)) {
-        match holds.last_mut() {
+        match intervals.last_mut() {
             Some(last) if last[1] == part.from => last[1] = part.to,
-            _ => holds.push([part.from, part.to]),
+            _ => intervals.push([part.from, part.to]),
         }
     }
     let mut places: Vec<Place> = Vec::new();
+    let touches = |part: &Part, end: usize| side(wanted, part.ends[end].as_ref(), 0.0) == Some(0);
+    if wanted.holds_where_met() {
+        // Between two parts, or at the very ends, outside of which it does not hold.
+        let holds = |part: Option<&Part>| part.is_some_and(|part| wanted.holds(part.side));
+        for k in 0..=parts.len() {
+            let (before, after) = (k.checked_sub(1).map(|k| &parts[k]), parts.get(k));
+            let met = before.is_some_and(|part| touches(part, 1)) || after.is_some_and(|part| touches(part, 0));
+            if met && !holds(before) && !holds(after) {
+                let at = before.map_or_else(|| parts[k].from, |part| part.to);
+                intervals.push([at, at]);
+            }
+        }
+        intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    }
     let ends = parts.windows(2).filter(|two| {
         let (a, b) = (two[0].side, two[1].side);
         if wanted.is_equality() {
             // From one side to the other, or touching: through the number or across it in a jump.
-            let touches = |part: &Part, end: usize| side(wanted, part.ends[end].as_ref(), 0.0) == Some(0);
             a.is_some() && b.is_some() && (a != b || (a != Some(0) && touches(&two[0], 1) && touches(&two[1], 0)))
         } else {
             wanted.holds(a) != wanted.holds(b)
@@ -209,7 +261,7 @@ fn gather(parts: &[Part], wanted: &Wanted, place: impl Fn(f64) -> Place) -> Foun
         }
     }
     let covered = [parts.first().map_or(f64::NAN, |part| part.from), parts.last().map_or(f64::NAN, |part| part.to)];
-    Found { exact: false, holds, places, covered, notes: Vec::new() }
+    Found { exact: false, holds: intervals, places, covered, notes: Vec::new() }
 }
 
 /// The quantity of an answer of its own at a value; the values at which the polygon alone has one are kept between the ends
@@ -251,23 +303,39 @@ fn on_grid(
     let mut last = look(low)?;
     let mut parts: Vec<Part> = Vec::new();
     let mut brackets: Vec<[f64; 2]> = Vec::new();
+    let mut unclear: Vec<String> = Vec::new();
     for k in 1..=CELLS {
         case.watch.progress(&format!("{name} = {}", last.0), k as f64 / CELLS as f64);
         let next = look(if k == CELLS { high } else { low + (high - low) * k as f64 / CELLS as f64 })?;
-        let (mut a, mut b) = (last.clone(), next.clone());
-        if a.2 != b.2 {
-            // The sides differ: the bracket is narrowed until the middle tells neither apart.
-            while (b.0 - a.0).abs() > NARROW * a.0.abs().max(b.0.abs()).max(1e-3 * (high - low)) {
+        let least = |a: f64, b: f64| NARROW * a.abs().max(b.abs()).max(1e-3 * (high - low));
+        let mut start = last.0;
+        // Each change of the side: the bracket is narrowed until the middle tells its ends no longer apart. Behind it may be
+        // a side that neither end has.
+        let mut changes = 0;
+        while last.2 != next.2 && changes < CHANGES {
+            changes += 1;
+            let (mut a, mut b) = (last.clone(), next.clone());
+            while (b.0 - a.0).abs() > least(a.0, b.0) {
                 let middle = look(0.5 * (a.0 + b.0))?;
                 if middle.2 == a.2 { a = middle } else { b = middle }
             }
+            // A number that is met within the width of a bracket only is passed.
+            if b.2 == Some(0) && b.0 < next.0 {
+                let beyond = look((b.0 + least(a.0, b.0)).min(next.0))?;
+                if beyond.2 != b.2 {
+                    b = beyond;
+                }
+            }
             let middle = 0.5 * (a.0 + b.0);
             brackets.push([a.0, b.0]);
-            parts.push(Part { from: last.0, to: middle, side: a.2, ends: [last.1.clone(), a.1] });
-            parts.push(Part { from: middle, to: next.0, side: b.2, ends: [b.1, next.1.clone()] });
-        } else {
-            parts.push(Part { from: last.0, to: next.0, side: a.2, ends: [last.1.clone(), next.1.clone()] });
+            parts.push(Part { from: start, to: middle, side: a.2, ends: [last.1.clone(), a.1] });
+            (start, last) = (middle, b);
         }
+        if last.2 != next.2 {
+            let [from, to] = [start, next.0].map(short);
+            unclear.push(format!("between {name} = {from} and {to} there are more changes than were narrowed"));
+        }
+        parts.push(Part { from: start, to: next.0, side: next.2, ends: [last.1, next.1.clone()] });
         last = next;
     }
     let bracket = |value: f64| brackets.iter().copied().find(|[a, b]| (*a..=*b).contains(&value));
@@ -278,6 +346,7 @@ fn on_grid(
          was narrowed to a bracket between two more; what comes and goes between two of them is not seen",
         CELLS + 1
     ));
+    found.notes.extend(unclear);
     if let Some([from, to]) = polygon_only.get() {
         found.notes.push(format!(
             "at values between {name} = {from} and {to} the answer is one of the friction polygon, and none on Coulomb's cone was \

@@ -40,4 +40,5 @@ mod sweep_points;
 pub mod sweep_run;
 mod to_and_fro;
 pub mod way;
+mod whole_route;
 mod widening;

@@ -25,9 +25,20 @@ use crate::watch::Watch;
 pub type Start<'s> = &'s dyn Fn(Case<'_>) -> Result<Result<Solved, &'static str>, SolveError>;
 
 /// A path from a start, with the scenario made ready there.
-struct Leg {
-    way: Way,
-    there: Arc<There>,
+pub(super) struct Leg {
+    pub(super) way: Way,
+    pub(super) there: Arc<There>,
+}
+
+/// Whether paths lead on from an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Led {
+    /// To all targets, or as far as they lead.
+    On,
+    /// From another answer only.
+    OffPaths,
+    /// None does over this parameter: another dependence, or numbers that broke down.
+    Nowhere,
 }
 
 /// A part of the path in which one scheme holds, upwards.
@@ -68,14 +79,19 @@ pub const IN_STEPS: &str = "followed on Coulomb's cone in steps, each an answer 
 
 /// The answer over a parameter.
 pub struct Route<'a> {
-    case: Case<'a>,
-    name: String,
-    legs: Vec<Leg>,
+    pub(super) case: Case<'a>,
+    pub(super) name: String,
+    pub(super) legs: Vec<Leg>,
     /// Its parts, upwards, without those of no length.
     pub stretches: Vec<Stretch>,
 }
 
 impl<'a> Route<'a> {
+    /// Without a path yet.
+    pub(super) fn empty(case: Case<'a>, name: &str) -> Route<'a> {
+        Route { case, name: name.to_owned(), legs: Vec::new(), stretches: Vec::new() }
+    }
+
     /// Follows the answer over `range`. `None` where no path leads over this parameter, or where one ends with answers beyond.
     ///
     /// # Errors
@@ -83,7 +99,7 @@ impl<'a> Route<'a> {
     pub fn new(case: Case<'a>, name: &str, range: [f64; 2]) -> Result<Option<Route<'a>>, PathError> {
         let solve: Start<'_> = &|case: Case<'_>| Ok(case.solve_pairs()?.if_answer(case.rules.cone));
         let route = Route::from_start(case, name, range, false, solve)?;
-        Ok(route.filter(|route| route.legs.iter().all(|leg| leg.way.end().answer_beyond().is_none())))
+        Ok(route.filter(|route| !route.stops_short()))
     }
 
     /// The same, to the end of a path, from an answer that `solve` finds, looking for a start at the upper end first where that
@@ -101,7 +117,7 @@ impl<'a> Route<'a> {
         if case.prepared.is_in_space() && !leads(case.prepared, case.rules) {
             return Ok(None);
         }
-        let mut route = Route { case, name: name.to_owned(), legs: Vec::new(), stretches: Vec::new() };
+        let mut route = Route::empty(case, name);
         let present = case.present(name).unwrap_or_default();
         let [low, high] = range;
         let mut starts = vec![(low, vec![high]), (high, vec![low])];
@@ -112,7 +128,7 @@ impl<'a> Route<'a> {
             starts.push((present, vec![low, high]));
         }
         let (mut how, mut off_paths) = ("", false);
-        'starts: for (start, targets) in starts {
+        for (start, targets) in starts {
             let there = case.at(name, start)?;
             let solved = match solve(there.case(case))? {
                 Ok(solved) => solved,
@@ -121,31 +137,11 @@ impl<'a> Route<'a> {
                     continue;
                 }
             };
-            let there = Arc::new(there);
-            for target in targets {
-                match Way::follow(there.case(case), &solved, name, target) {
-                    // A path, but not from the answer at the start.
-                    Ok(way) if way.is_from_zero() => {
-                        off_paths = true;
-                        continue 'starts;
-                    }
-                    Err(PathError::OffPaths { .. }) => {
-                        off_paths = true;
-                        continue 'starts;
-                    }
-                    Ok(way) => route.take(Leg { way, there: Arc::clone(&there) }),
-                    // Another dependence, or numbers that broke down: no exact path.
-                    Err(
-                        PathError::Mixed { .. }
-                        | PathError::Unknown { .. }
-                        | PathError::Idle(_)
-                        | PathError::Breakdown { .. },
-                    ) => return Ok(None),
-                    Err(error) => return Err(error),
-                }
+            match route.lead(Arc::new(there), &solved, &targets)? {
+                Led::On => return Ok(Some(route)),
+                Led::OffPaths => off_paths = true,
+                Led::Nowhere => return Ok(None),
             }
-            route.stretches.sort_by(|a, b| a.from.total_cmp(&b.from));
-            return Ok(Some(route));
         }
         if off_paths {
             return Ok(None);
@@ -155,6 +151,29 @@ impl<'a> Route<'a> {
 }
 
 impl Route<'_> {
+    /// Takes the paths from an answer to some values among its legs: all of them or none.
+    pub(super) fn lead(&mut self, there: Arc<There>, solved: &Solved, targets: &[f64]) -> Result<Led, PathError> {
+        let mut ways = Vec::new();
+        for &target in targets {
+            match Way::follow(there.case(self.case), solved, &self.name, target) {
+                // A path, but not from the answer at the start.
+                Ok(way) if way.is_from_zero() => return Ok(Led::OffPaths),
+                Err(PathError::OffPaths { .. }) => return Ok(Led::OffPaths),
+                Ok(way) => ways.push(way),
+                Err(
+                    PathError::Mixed { .. }
+                    | PathError::Unknown { .. }
+                    | PathError::Idle(_)
+                    | PathError::Breakdown { .. },
+                ) => return Ok(Led::Nowhere),
+                Err(error) => return Err(error),
+            }
+        }
+        ways.into_iter().for_each(|way| self.take(Leg { way, there: Arc::clone(&there) }));
+        self.stretches.sort_by(|a, b| a.from.total_cmp(&b.from));
+        Ok(Led::On)
+    }
+
     fn take(&mut self, leg: Leg) {
         let ends = leg.way.stretches();
         let number = self.legs.len();
@@ -164,6 +183,11 @@ impl Route<'_> {
         }
     }
 
+    /// Whether a path ends with answers beyond that it does not lead to.
+    pub(super) fn stops_short(&self) -> bool {
+        self.legs.iter().any(|leg| leg.way.end().answer_beyond().is_some())
+    }
+
     /// What tells those who look at it to stop.
     pub fn watch(&self) -> &dyn Watch {
         self.case.watch
@@ -171,8 +195,13 @@ impl Route<'_> {
 
     /// The values of the parameter between which the answer was followed.
     pub fn covered(&self) -> [f64; 2] {
-        let low = self.stretches.iter().map(|stretch| stretch.from).fold(f64::INFINITY, f64::min);
-        [low, self.stretches.iter().map(|stretch| stretch.to).fold(f64::NEG_INFINITY, f64::max)]
+        self.covered_by(0).unwrap_or([f64::INFINITY, f64::NEG_INFINITY])
+    }
+
+    /// The same of the legs from one on; `None` where they have no length.
+    pub(super) fn covered_by(&self, first: usize) -> Option<[f64; 2]> {
+        let of = self.stretches.iter().filter(|stretch| stretch.leg >= first).map(|stretch| [stretch.from, stretch.to]);
+        of.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
     /// How well it is known.
@@ -232,7 +261,7 @@ impl Route<'_> {
     pub fn notes(&self) -> Vec<String> {
         let early = self.legs.iter().filter(|leg| *leg.way.end() != PathEnd::Target);
         let steps = (self.known() == Known::InSteps).then(|| IN_STEPS.to_owned());
-        early.map(|leg| leg.way.end_sentence()).chain(steps).collect()
+        early.map(|leg| leg.way.end_sentence()).chain(self.joint_notes()).chain(steps).collect()
     }
 
     /// Whether it is certified that there is no answer further on, downwards or upwards.

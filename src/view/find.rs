@@ -48,7 +48,11 @@ pub fn write(out: &mut dyn Write, asked: &Asked<'_>, found: &Found, style: &Styl
     let Asked { name, unit, condition, range } = asked;
     let number = |value: f64| with_unit(&exact(value), *unit);
     for [from, to] in &found.holds {
-        let text = format!("{condition} for {name} from {} to {}", number(*from), number(*to));
+        let text = if from == to {
+            format!("{condition} at {name} = {} only", number(*from))
+        } else {
+            format!("{condition} for {name} from {} to {}", number(*from), number(*to))
+        };
         style.paragraph(out, Role::Accent, &text)?;
     }
     if found.holds.is_empty() && found.places.is_empty() {

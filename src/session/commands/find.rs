@@ -1,13 +1,11 @@
 //! `find`: values of a parameter at which a quantity is as wanted, or up to which there is an answer.
 
-use std::cmp::Ordering;
-
 use clap::Args;
 use serde::Serialize;
 
 use crate::model::quantity::{OfAnswer, Quantity};
 use crate::path::edge::{Which, edge};
-use crate::path::find::{Found, Wanted, find};
+use crate::path::find::{Found, Order, Wanted, find};
 use crate::view;
 
 use crate::model::words::no_such;
@@ -20,8 +18,8 @@ use crate::session::{CommandError, Next, Output, Session, worker};
 
 /// Find the values of a parameter or load at which a quantity is as wanted
 ///
-/// `find NAME [A..B] where QUANTITY < | = | > VALUE` (or `QUANTITY WORD`) tells every interval and place in the range,
-/// which is that of the slider if it is left out. Where an exact path leads over NAME (loads, friction) they are exact
+/// `find NAME [A..B] where QUANTITY < | <= | = | >= | > VALUE` (or `QUANTITY WORD`) tells every interval and place in the
+/// range, which is that of the slider if it is left out. Where an exact path leads over NAME (loads, friction) they are exact
 /// and in order, in space found along Coulomb's cone in steps; elsewhere (geometry, stiffness) they are brackets
 /// between runs of their own. `find least|most NAME [A..B] where outcome answer` brackets the first value with an
 /// answer between a checked answer and a proved collapse; with another condition it is the first or the last place at
@@ -141,14 +139,16 @@ impl Session {
             Expectation::Word { quantity, word, equal: true } => (quantity, Wanted::Word(word)),
             Expectation::Number { quantity, bound } => {
                 let order = match bound.parts() {
-                    (Operator::Less | Operator::LessEqual, ..) => Ordering::Less,
-                    (Operator::Greater | Operator::GreaterEqual, ..) => Ordering::Greater,
-                    (Operator::Equal, _, 0.0) => Ordering::Equal,
-                    _ => return refused("find: expected < = or > and a number, without a tolerance"),
+                    (Operator::Less, ..) => Order::Less,
+                    (Operator::LessEqual, ..) => Order::AtMost,
+                    (Operator::Equal, _, 0.0) => Order::Equal,
+                    (Operator::GreaterEqual, ..) => Order::AtLeast,
+                    (Operator::Greater, ..) => Order::Greater,
+                    _ => return refused("find: expected < <= = >= or > and a number, without a tolerance"),
                 };
                 (quantity, Wanted::Compared(order, bound.parts().1))
             }
-            _ => return refused("find: expected QUANTITY < | = | > VALUE, or QUANTITY and a word"),
+            _ => return refused("find: expected QUANTITY < | <= | = | >= | > VALUE, or QUANTITY and a word"),
         };
         let (name, condition) = (name.to_owned(), condition.join(" "));
         Ok(Request { which, name, range, quantity, wanted, condition })
