@@ -2,14 +2,15 @@
 //! form in z.
 
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
 use nalgebra::DMatrix;
 use num_rational::BigRational;
-use num_traits::{Signed, Zero};
+use num_traits::{One, Signed, Zero};
 
-use crate::lcp::exact::dyadic::{WholeRows, rational, rational_rows};
+use crate::lcp::exact::dyadic::{self, WholeRows, rational, rational_rows};
 use crate::lcp::exact::polyhedron::{GoOn, Polyhedron, State};
-use crate::lcp::exact::rational_solve::{clear_denominators, product, rank_modulo_prime};
+use crate::lcp::exact::rational_solve::{clear_denominators, common_multiple, product, rank_modulo_prime};
 use crate::lcp::exact::scalar::BigInt;
 
 use crate::contact::polygon::Polygon;
@@ -31,6 +32,8 @@ pub(crate) struct ExactSystem<'a> {
     pub constants: Vec<BigRational>,
     /// How far the force of each joint may lie from this, either way; empty where it is exact.
     rooms: Vec<f64>,
+    /// Rows of R with their constant, as integers over a common denominator.
+    whole: OnceLock<Vec<(Vec<BigInt>, BigInt)>>,
 }
 
 /// How far variables may lie from their forms, in parts of one.
@@ -99,7 +102,7 @@ impl<'a> ExactSystem<'a> {
             let gap = rational(gap);
             constants.iter_mut().zip(&stiffness).for_each(|(constant, row)| *constant -= &row[k] * &gap);
         }
-        Self { problem, stiffness, constants, rooms: Vec::new() }
+        Self { problem, stiffness, constants, rooms: Vec::new(), whole: OnceLock::new() }
     }
 
     /// Number of the nonbasic variables that a polyhedron starts with: z of all joints, then e + room of those that have one.
@@ -138,13 +141,13 @@ impl<'a> ExactSystem<'a> {
         let mut free: Vec<usize> = system.pairs.iter().flat_map(|pair| pair.tangential.clone()).collect();
         for (i, pair) in system.pairs.iter().enumerate() {
             if !pair.law.is_bilateral() {
-                rows.push_rational(&self.form(RowId { pair: i, couple: RowKind::Normal }));
+                rows.push_whole(self.form(RowId { pair: i, couple: RowKind::Normal }));
             }
             if !pair.rubs() {
                 continue;
             }
             for facet in 0..polygon.facets() as u16 {
-                rows.push_rational(&self.form(RowId { pair: i, couple: RowKind::Facet(facet) }));
+                rows.push_whole(self.form(RowId { pair: i, couple: RowKind::Facet(facet) }));
             }
             for form in slip_forms(polygon).into_iter().filter(|_| pair.is_in_space()) {
                 let mut row = vec![0.0; k + 1];
@@ -177,8 +180,16 @@ impl<'a> ExactSystem<'a> {
         (made, state)
     }
 
-    /// The force of a row, x_n or a reserve: coefficients over z, the constant last.
-    fn form(&self, row: RowId) -> Vec<BigRational> {
+    /// Rows of R with their constant, as integers over a common denominator.
+    fn whole_rows(&self) -> &[(Vec<BigInt>, BigInt)] {
+        self.whole.get_or_init(|| {
+            let rows = self.stiffness.iter().zip(&self.constants);
+            rows.map(|(row, constant)| clear_denominators(&[row, std::slice::from_ref(constant)].concat())).collect()
+        })
+    }
+
+    /// The force of a row, x_n or a reserve: coefficients over z, the constant last, as integers over a common denominator.
+    fn form(&self, row: RowId) -> (Vec<BigInt>, BigInt) {
         let law = &self.problem.laws[row.pair];
         let mut terms: Vec<(usize, f64)> = row.joints(&self.problem.system, self.problem.polygon).collect();
         let mut fixed = 0.0;
@@ -186,19 +197,30 @@ impl<'a> ExactSystem<'a> {
             terms.push((row.pair, law.friction()));
             fixed = law.fixed_bound();
         }
-        let k = self.stiffness.len();
-        let (mut form, mut constant) = (vec![BigRational::zero(); self.columns()], rational(fixed));
-        for (joint, factor) in terms.into_iter().filter(|(_, factor)| *factor != 0.0) {
-            let factor = rational(factor);
-            form.iter_mut().zip(&self.stiffness[joint]).for_each(|(sum, entry)| *sum += &factor * entry);
-            constant += &factor * &self.constants[joint];
-            if let Some(room) = self.rooms.get(joint) {
-                constant -= &factor * rational(*room);
-                form[k + joint] += &factor;
+        terms.retain(|(_, factor)| *factor != 0.0);
+        let (k, columns, whole) = (self.stiffness.len(), self.columns(), self.whole_rows());
+        let room = |joint: usize, factor: f64| self.rooms.get(joint).map(|room| dyadic::product(factor, *room));
+        let exactly = |value: f64| dyadic::product(value, 1.0);
+        // What all parts of the sum are integers over: a power of two times what the rows have.
+        let exponents =
+            terms.iter().flat_map(|&(joint, factor)| room(joint, factor).into_iter().chain([exactly(factor)]));
+        let least = exponents.chain([exactly(fixed)]).fold(0, |least, (_, exponent)| exponent.min(least));
+        let common = terms.iter().fold(BigInt::one(), |common, (joint, _)| common_multiple(common, &whole[*joint].1));
+        let units = |(mantissa, exponent): (i128, i64)| dyadic::shifted(mantissa, exponent - least) * &common;
+        let (mut form, mut constant) = (vec![BigInt::zero(); columns], units(exactly(fixed)));
+        for &(joint, factor) in &terms {
+            let (entries, denominator) = &whole[joint];
+            let times = units(exactly(factor)) / denominator;
+            let summed = form.iter_mut().zip(&entries[..k]).filter(|(_, entry)| !entry.is_zero());
+            summed.for_each(|(sum, entry)| *sum += &times * entry);
+            constant += &times * &entries[k];
+            if let Some(room) = room(joint, factor) {
+                constant -= units(room);
+                form[k + joint] += units(exactly(factor));
             }
         }
         form.push(constant);
-        form
+        (form, common << -least as u64)
     }
 
     /// RF − R·(g, 0) of each joint, within its `rooms` either way where there are any.
@@ -228,14 +250,10 @@ impl<'a> ExactSystem<'a> {
 
     /// λ at z.
     pub fn force(&self, z: &[BigRational]) -> Vec<BigRational> {
-        self.stiffness
-            .iter()
-            .zip(&self.constants)
-            .map(|(row, constant)| {
-                let terms = row.iter().zip(z).filter(|(r, z)| !r.is_zero() && !z.is_zero());
-                terms.map(|(r, z)| r * z).sum::<BigRational>() + constant
-            })
-            .collect()
+        // The constants stand behind the rows.
+        let mut point = clear_denominators(z);
+        point.0.push(point.1.clone());
+        self.whole_rows().iter().map(|row| product(row, &point)).collect()
     }
 }
 

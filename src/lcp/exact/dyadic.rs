@@ -149,8 +149,17 @@ impl WholeRows {
 
     /// Adds a row of rationals.
     pub fn push_rational(&mut self, row: &[BigRational]) {
-        let (whole, scale) = clear_denominators(row);
-        self.rows.push(whole);
+        self.push_whole(clear_denominators(row));
+    }
+
+    /// Adds a row of integers over a common denominator > 0, without the twos that all have.
+    pub fn push_whole(&mut self, (mut row, mut scale): (Vec<BigInt>, BigInt)) {
+        let twos = row.iter().chain([&scale]).filter_map(BigInt::trailing_zeros).min().unwrap_or(0);
+        if twos > 0 {
+            row.iter_mut().for_each(|entry| *entry >>= twos);
+            scale >>= twos;
+        }
+        self.rows.push(row);
         self.scale.push(scale);
     }
 

@@ -40,15 +40,21 @@ pub enum RationalSolution {
     Unlucky,
 }
 
+/// The least common multiple of two integers > 0.
+pub fn common_multiple(a: BigInt, b: &BigInt) -> BigInt {
+    if (&a % b).is_zero() {
+        return a;
+    }
+    // a / b in lowest terms: its denominator is what is still missing.
+    let missing = BigRational::new(a.clone(), b.clone());
+    a * missing.denom()
+}
+
 /// Multiplies a rational row by the smallest positive integer that makes it whole; returns that integer too.
 pub fn clear_denominators(row: &[BigRational]) -> (Vec<BigInt>, BigInt) {
     let mut common = BigInt::one();
-    for entry in row {
-        // common / denominator in lowest terms: its denominator is what is still missing.
-        let missing = BigRational::new(common.clone(), entry.denom().clone());
-        if !missing.denom().is_one() {
-            common *= missing.denom();
-        }
+    for denominator in row.iter().map(BigRational::denom).filter(|denominator| !denominator.is_one()) {
+        common = common_multiple(common, denominator);
     }
     let whole = row.iter().map(|entry| entry.numer() * (&common / entry.denom())).collect();
     (whole, common)
