@@ -231,7 +231,7 @@ impl MainSystem {
     }
 
     /// Σ |force| that elements, springs, loads and joints bring to each component: of translations the lengths of the
-    /// forces, of rotations the moments and the forces with the element as their lever.
+    /// forces (a direction is right to rounding), of rotations the moments and the forces with the element as their lever.
     fn meeting_forces(
         &self,
         structure: &Structure,
@@ -258,14 +258,31 @@ impl MainSystem {
             }
         }
         for (f, factor) in std::iter::zip(&self.f, factors) {
-            for (sum, f) in std::iter::zip(&mut sums, f) {
-                *sum += (factor * f).abs();
-            }
+            self.add_loads(structure.nodes.len(), f, factor.abs(), &mut sums);
         }
         for (joint, lambda) in std::iter::zip(&self.all_joints, lambda.iter()) {
-            self.each_term(joint, |dof, a| sums[dof] += (a * lambda).abs());
+            for (node, a) in &joint.terms {
+                let force = length(*a) * lambda.abs();
+                Component::TRANSLATIONS
+                    .iter()
+                    .filter_map(|c| self.dofs.of(*node, *c))
+                    .for_each(|dof| sums[dof] += force);
+            }
         }
         sums
+    }
+
+    /// Adds `factor` times the lengths of the nodal forces and moments `f` of a load case.
+    fn add_loads(&self, nodes: usize, f: &[f64], factor: f64, sums: &mut [f64]) {
+        for node in 0..nodes {
+            let of = |component: Component| self.dofs.of(node, component).map_or(0.0, |dof| f[dof]);
+            let sizes = [Component::TRANSLATIONS, Component::ROTATIONS].map(|kind| length(kind.map(of)));
+            for component in Component::ALL {
+                if let Some(dof) = self.dofs.of(node, component) {
+                    sums[dof] += factor * sizes[usize::from(component.is_rotation())];
+                }
+            }
+        }
     }
 
     /// Adds what the other nodes of a superelement do to each of its rows as they move against the node of the row.

@@ -20,6 +20,29 @@ fn moved(answer: &Answer, node: &str) -> [f64; 6] {
     all.iter().find(|found| found.node == node).expect("a node").all()
 }
 
+/// Directions turned by 90° have cosines of 1e-16 in place of zeros: a component in which only their rounding acts is judged by
+/// the forces at its node. The node sticks, 4 < 0.5 · 10.
+#[test]
+fn a_component_that_only_rounding_loads_is_balanced() {
+    let angle = 90.0_f64.to_radians();
+    let (cos, sin) = (angle.cos(), angle.sin());
+    assert!(cos != 0.0);
+    for tiny in [cos, -2.334_869_823_772_51e-16, 3.3 * cos] {
+        let case = space(json!({
+            "nodes": { "A": [0, -3, 0] },
+            "springs": [{ "at": "A", "direction": [sin, tiny, 0], "stiffness": 236.28 }],
+            "contacts": [{ "id": "c", "node": "A", "against": "ground", "normal": [0, 0, 1], "friction": 0.5,
+                           "tangent": [cos, sin, 0] }],
+            "loads": { "w": { "items": [{ "point": { "at": "A", "force": [0, 0, -10] } }] },
+                       "p": { "items": [{ "point": { "at": "A", "force": [4.0 * sin, 4.0 * tiny, 0] } }] } } }));
+        let answer = case.solve(&[]);
+        assert!(answer.is_answer(), "{tiny:e}: {:?}", answer.failure);
+        let pair = &answer.pairs[0];
+        assert_eq!(pair.state, State::Stick);
+        near("friction", pair.bound - pair.reserve(), 4.0, 1e-14, 4.0);
+    }
+}
+
 /// One node on springs of stiffness 1, r = 2, F = (3, 4): |F| − r = 3 stretches them along F.
 #[test]
 fn a_node_on_two_springs() {
