@@ -165,7 +165,7 @@ fn combined(row: &[Entry], factor: f64, other: &[Entry]) -> Terms {
 }
 
 fn exactly(row: &[Entry]) -> Vec<(usize, Dyadic)> {
-    row.iter().map(|entry| (entry.motion, Dyadic::from(entry.part.value))).collect()
+    row.iter().map(|entry| (entry.motion, entry.exact.clone())).collect()
 }
 
 impl<'a> MotionProgram<'a> {

@@ -8,14 +8,19 @@
 //! that took too long or lost too many digits, elements joined by common nodes are taken as one part; its internal
 //! mechanisms, if it has any, are found from the eigenvalues of R instead (see `main_system`), known to fewer digits.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+use nalgebra::{DMatrix, DVectorView};
 
 use super::contrast::Stiffnesses;
 use super::dof::Dofs;
 use super::idle_spins::idle_spins;
 use super::null_space::{DENSE, Terms, null_space};
 use super::parts::{Parts, superelement_parts};
+use super::traces::Traces;
+use crate::doubled::Doubled;
 use crate::model::groups::Groups;
+use crate::model::pair::Joint;
 use crate::model::space_section::EndJoint;
 use crate::model::structure::{Component, Dimension, ElementKind, Structure};
 use crate::model::superelement::Part;
@@ -54,6 +59,9 @@ pub struct LooseMotions {
     pub motions: Vec<Motion>,
     /// Whether all parts were looked at one by one, so that no mechanism among them can have been missed.
     pub complete: bool,
+    /// Of each cluster what its motions do to the joints, in the order of `motions`; `None` where that is not known
+    /// beyond f64.
+    pub traces: Option<Vec<Traces>>,
 }
 
 impl LooseMotions {
@@ -84,30 +92,44 @@ pub fn shortest_side(structure: &Structure) -> f64 {
     structure.elements.iter().map(|element| of_element(&element.nodes)).fold(f64::INFINITY, f64::min)
 }
 
-/// The motions from the parts, one by one where that takes no more than `effort` additions.
-pub fn loose_motions(structure: &Structure, dofs: &Dofs, effort: usize) -> LooseMotions {
+/// The motions from the parts, one by one where that takes no more than `effort` additions, and what they do to `joints`.
+pub fn loose_motions(structure: &Structure, dofs: &Dofs, joints: &[Joint], effort: usize) -> LooseMotions {
     let parts = Parts::new(structure);
     let clusters = parts.clusters(structure);
     let spins: Vec<Spin> = idle_spins(structure, &parts).into_iter().map(|spin| (spin.part, spin.axis)).collect();
     let (mut motions, mut complete) = (Vec::new(), true);
+    // The stiffness of a superelement is given in numbers, not by geometry.
+    let mut traces = structure.superelement.is_none().then(Vec::new);
+    let mut joints_of = vec![Vec::new(); structure.nodes.len()];
+    for (index, joint) in joints.iter().enumerate() {
+        joint.terms.iter().for_each(|(node, _)| joints_of[*node].push(index));
+    }
     for cluster in clusters {
         let unknowns = Unknowns::of(&cluster, structure, dofs, &parts);
         // An elimination cannot be sure of the rank.
         complete &= unknowns.count <= DENSE;
-        match unknowns.null_space(&cluster, &spins, effort) {
-            Some(space) => motions.extend(space),
+        let rows = unknowns.rows(&cluster, &spins);
+        match unknowns.null_space(&cluster, &rows, effort) {
+            Some(near) => {
+                motions.extend(unknowns.motions(&cluster, &near));
+                if let Some(traces) = &mut traces {
+                    traces.push(Traces { joints: unknowns.moved_joints(&cluster, joints, &joints_of), rows, near });
+                }
+            }
             None => {
-                complete = false;
+                (complete, traces) = (false, None);
                 let (merged, cluster) = cluster.with_whole_groups(structure);
                 // What turns inside a group is not looked at, so neither is the spin of one on a line.
                 let lines = merged.lines(structure).into_iter().zip(0..);
                 let spins: Vec<Spin> = lines.filter_map(|(axis, part)| Some((part, axis?))).collect();
                 let unknowns = Unknowns::of(&cluster, structure, dofs, &merged);
-                motions.extend(unknowns.null_space(&cluster, &spins, usize::MAX).unwrap_or_default());
+                let rows = unknowns.rows(&cluster, &spins);
+                let near = unknowns.null_space(&cluster, &rows, usize::MAX);
+                motions.extend(near.iter().flat_map(|near| unknowns.motions(&cluster, near)));
             }
         }
     }
-    LooseMotions { motions, complete }
+    LooseMotions { motions, complete, traces }
 }
 
 /// A part and the line about which it does not turn.
@@ -197,11 +219,21 @@ impl Cluster {
     }
 }
 
+/// The terms of a multiple.
+fn times(factor: f64, terms: Terms) -> impl Iterator<Item = (usize, f64)> {
+    let parts = terms.into_iter().flat_map(move |(unknown, a)| {
+        let product = Doubled::product(factor, a);
+        [(unknown, product.to_f64()), (unknown, product.tail())]
+    });
+    parts.filter(|(_, a)| *a != 0.0)
+}
+
 fn negative(terms: Terms) -> impl Iterator<Item = (usize, f64)> {
     terms.into_iter().map(|(unknown, a)| (unknown, -a))
 }
 
 /// The unknowns of a cluster: translations and scaled rotations of each part, all of the first part, then of the next …
+/// The terms of what is made of them add up exactly, those of one unknown too: a lever has two, and so has a product.
 struct Unknowns<'a> {
     structure: &'a Structure,
     dofs: &'a Dofs,
@@ -211,7 +243,7 @@ struct Unknowns<'a> {
     count: usize,
     /// The point about which parts turn.
     centre: [f64; 3],
-    /// Distance from there to the farthest node: rotations are scaled by it.
+    /// Distance from there to the farthest node, up to the next power of two: rotations are scaled by it.
     size: f64,
 }
 
@@ -222,7 +254,7 @@ impl<'a> Unknowns<'a> {
         let centre: [f64; 3] = std::array::from_fn(|c| cluster.nodes.iter().map(|&n| place(n)[c]).sum::<f64>() / count);
         let distance = |node: &usize| distance(centre, place(*node));
         let size = cluster.nodes.iter().map(distance).fold(0.0, f64::max);
-        let size = if size > 0.0 { size } else { 1.0 };
+        let size = if size > 0.0 { size.log2().ceil().exp2() } else { 1.0 };
         let mut of_part = HashMap::with_capacity(cluster.parts.len());
         let mut count = 0;
         for &part in &cluster.parts {
@@ -237,45 +269,73 @@ impl<'a> Unknowns<'a> {
         Unknowns { structure, dofs, parts, of_part, count, centre, size }
     }
 
-    /// Motions of the cluster; `None` where an elimination took more than `effort` additions or lost too many digits.
-    fn null_space(&self, cluster: &Cluster, spins: &[Spin], effort: usize) -> Option<Vec<Motion>> {
-        let structure = self.structure;
+    /// What holds the cluster: each row is 0.
+    fn rows(&self, cluster: &Cluster, spins: &[Spin]) -> Vec<Terms> {
         let mut rows: Vec<Terms> = [self.pins(cluster), self.given_resistance(), self.holders(cluster)].concat();
-        if structure.dimension == Dimension::Space {
+        if self.structure.dimension == Dimension::Space {
             rows.extend(self.torsions(cluster));
             let own = spins.iter().filter(|(part, _)| self.of_part.contains_key(part));
             rows.extend(own.map(|&(part, axis)| self.spin(part, axis).collect::<Terms>()));
         }
-        let places = cluster.nodes.iter().flat_map(|&n| structure.nodes[n].position);
+        rows
+    }
+
+    /// The null space of the rows; `None` where an elimination took more than `effort` additions or lost too many digits.
+    fn null_space(&self, cluster: &Cluster, rows: &[Terms], effort: usize) -> Option<DMatrix<f64>> {
+        let places = cluster.nodes.iter().flat_map(|&n| self.structure.nodes[n].position);
         let largest = places.fold(0.0_f64, |m, x| m.max(x.abs()));
         let null = NULL * (1.0 + largest / self.size);
-        let space = null_space(&rows, self.count, null, effort)?;
-        if self.count > DENSE && !space.is_of(&rows, null) {
-            return None;
-        }
-        let motions = space.basis.column_iter().map(|q| {
-            let mut u = vec![[0.0; 6]; structure.nodes.len()];
+        let space = null_space(rows, self.count, null, effort)?;
+        (self.count <= DENSE || space.is_of(rows, null)).then_some(space.basis)
+    }
+
+    /// The motions of the cluster from the null space.
+    fn motions(&self, cluster: &Cluster, near: &DMatrix<f64>) -> Vec<Motion> {
+        let motion = |q: DVectorView<'_, f64>| {
+            let mut u = vec![[0.0; 6]; self.structure.nodes.len()];
             for &node in &cluster.nodes {
-                for &component in structure.dimension.components() {
+                for &component in self.structure.dimension.components() {
                     let terms = self.of_node(node, component).unwrap_or_default();
                     let moved = terms.into_iter().map(|(i, a)| a * q[i]).sum::<f64>();
                     u[node][component as usize] = if component.is_rotation() { moved / self.size } else { moved };
                 }
             }
             Motion { u, internal: false }
-        });
-        Some(motions.collect())
+        };
+        near.column_iter().map(motion).collect()
+    }
+
+    /// The mutual displacement of every joint that the cluster moves, from those at each node.
+    fn moved_joints(&self, cluster: &Cluster, joints: &[Joint], joints_of: &[Vec<usize>]) -> Vec<(usize, Terms)> {
+        let own: HashSet<usize> = cluster.nodes.iter().copied().collect();
+        let touched: BTreeSet<usize> = cluster.nodes.iter().flat_map(|&node| joints_of[node].iter().copied()).collect();
+        let mut moved = Vec::new();
+        for index in touched {
+            let mut row = Terms::new();
+            for (node, a) in joints[index].terms.iter().filter(|(node, _)| own.contains(node)) {
+                for (&component, a) in self.structure.dimension.translations().iter().zip(a) {
+                    row.extend(times(*a, self.of_node(*node, component).unwrap_or_default()));
+                }
+            }
+            if !row.is_empty() {
+                moved.push((index, row));
+            }
+        }
+        moved
     }
 
     /// Displacement of a node as it moves with a part; rotations are multiplied by `size`.
     fn moved(&self, node: usize, part: u32, component: Component) -> Terms {
         let unknowns = self.of_part[&part];
-        let arm = way(self.centre, self.structure.nodes[node].position).map(|arm| arm / self.size);
+        let place = self.structure.nodes[node].position;
         let mut terms = vec![(unknowns[component as usize], 1.0)];
         if !component.is_rotation() {
-            terms.extend(component.levers(arm).map(|(rotation, lever)| (unknowns[rotation as usize], lever)));
+            let arm = std::array::from_fn(|c| Doubled::sum(place[c], -self.centre[c]));
+            for (rotation, lever) in component.levers(arm) {
+                terms.extend([lever.to_f64(), lever.tail()].map(|part| (unknowns[rotation as usize], part / self.size)));
+            }
         }
-        terms.retain(|(unknown, _)| *unknown != usize::MAX);
+        terms.retain(|(unknown, a)| *unknown != usize::MAX && *a != 0.0);
         terms
     }
 
@@ -373,8 +433,7 @@ impl<'a> Unknowns<'a> {
         let springs = cluster.springs.iter().map(|&spring| &self.structure.springs[spring]);
         for spring in springs.filter(|spring| spring.stiffness > 0.0) {
             let terms = spring.terms.iter().filter_map(|term| {
-                let terms = self.of_node(term.node, term.component)?;
-                Some(terms.into_iter().map(|(i, a)| (i, term.factor * a)))
+                Some(times(term.factor, self.of_node(term.node, term.component)?))
             });
             rows.push(terms.flatten().collect());
         }
