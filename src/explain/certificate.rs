@@ -287,9 +287,15 @@ impl<'a> MotionProgram<'a> {
         let slacks = self.slacks();
         slacks.iter().for_each(|slack| slack.demand(&mut program, None));
         program.set_costs(surplus.iter().map(|(k, a)| (*k, -a)));
-        let x = self.solve(&program)?;
-        let most: f64 = surplus.iter().map(|(k, a)| a * x[*k]).sum();
-        if most <= CLEAR {
+        let mut x = self.solve(&program)?;
+        let surplus_at = |x: &[f64]| surplus.iter().map(|(k, a)| a * x[*k]).sum::<f64>();
+        // Just beyond a limit little is left over: likewise looked at more closely.
+        let zoom = (surplus_at(&x) <= UNCLEAR).then_some(ZOOMS[0]);
+        if let Some(zoom) = zoom {
+            x = program.refined(&x, zoom, self.seconds())?;
+        }
+        let (most, clear) = (surplus_at(&x), CLEAR / zoom.unwrap_or(1.0));
+        if most <= clear {
             return None;
         }
         // As much room as there can be in all inequalities at once.
@@ -303,9 +309,13 @@ impl<'a> MotionProgram<'a> {
             rooms.push(room);
         }
         program.at_most(surplus.iter().map(|(k, a)| (*k, -a)).collect(), -0.5 * most);
-        let x = self.solve(&program)?;
+        let mut x = self.solve(&program)?;
+        let mut none = TIGHT * most;
+        if let Some(zoom) = zoom {
+            (x, none) = (program.refined(&x, zoom, self.seconds())?, f64::max(none, clear));
+        }
         let tight: Vec<&Slack> =
-            slacks.iter().zip(&rooms).filter(|(_, room)| x[**room] < TIGHT * most).map(|(s, _)| s).collect();
+            slacks.iter().zip(&rooms).filter(|(_, room)| x[**room] < none).map(|(s, _)| s).collect();
         self.proof(&x, &tight)
     }
 

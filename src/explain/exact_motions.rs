@@ -8,18 +8,16 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use super::exact_equations::{Equations, Solved};
-use super::motions::ZERO;
 use crate::fem::Traces;
 use crate::lcp::exact::dyadic::Dyadic;
 
 /// Time to solve the equations of all parts.
 const BUDGET: Duration = Duration::from_secs(1);
-/// Most unknowns of parts that are held by something: the numbers get longer by some 60 digits of two with each of its
-/// equations.
-const MOST_UNKNOWNS: usize = 60;
 /// An exact motion lies this close to that of f64, as a share of its largest amount; where what holds the parts leaves it
 /// only by rounding there is none.
 const NEAR: f64 = 1e-6;
+/// A sum below this multiple of the magnitudes of its terms is zero.
+pub(super) const ZERO: f64 = 8.0 * f64::EPSILON;
 
 /// Of each joint the motions that move it, and by how much; `None` where the equations have fewer solutions than f64 found,
 /// or are too many.
@@ -30,9 +28,6 @@ pub(super) fn exact_motions(traces: &[Traces], joints: usize) -> Option<Vec<Vec<
     for Traces { rows, near, joints } in traces {
         if near.ncols() == 0 {
             continue;
-        }
-        if !rows.is_empty() && near.nrows() > MOST_UNKNOWNS {
-            return None;
         }
         let mut equations = Equations::new(near.nrows(), end);
         rows.iter().for_each(|row| equations.add(summed(row)));

@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::exact_motions::exact_motions;
+use super::exact_motions::{ZERO, exact_motions};
 use super::kernel::clean;
 use crate::contact::sum::Sum;
 use crate::contact::system::ContactSystem;
@@ -18,8 +18,6 @@ use crate::model::structure::Structure;
 /// A motion found as an eigenvector is known to about this share of its largest displacement: the rounding of R over
 /// the distance of its zero eigenvalue to the next (1e-16 / 1e-10).
 const EIGENVECTOR: f64 = 1e-6;
-/// A sum below this multiple of the magnitudes of its terms is zero.
-pub(super) const ZERO: f64 = 8.0 * f64::EPSILON;
 
 /// An entry of a motion below this share of its largest is rounding.
 const ROUNDING: f64 = 1e-11;

@@ -99,7 +99,7 @@ pub fn loose_motions(structure: &Structure, dofs: &Dofs, joints: &[Joint], effor
     let spins: Vec<Spin> = idle_spins(structure, &parts).into_iter().map(|spin| (spin.part, spin.axis)).collect();
     let (mut motions, mut complete) = (Vec::new(), true);
     // The stiffness of a superelement is given in numbers, not by geometry.
-    let mut traces = structure.superelement.is_none().then(Vec::new);
+    let mut traces = structure.superelement.is_none().then(Vec::<Traces>::new);
     let mut joints_of = vec![Vec::new(); structure.nodes.len()];
     for (index, joint) in joints.iter().enumerate() {
         joint.terms.iter().for_each(|(node, _)| joints_of[*node].push(index));
@@ -112,9 +112,10 @@ pub fn loose_motions(structure: &Structure, dofs: &Dofs, joints: &[Joint], effor
         match unknowns.null_space(&cluster, &rows, effort) {
             Some(near) => {
                 motions.extend(unknowns.motions(&cluster, &near));
-                if let Some(traces) = &mut traces {
-                    traces.push(Traces { joints: unknowns.moved_joints(&cluster, joints, &joints_of), rows, near });
-                }
+                let traced = || unknowns.exactly().traces(&cluster, &spins, (joints, &joints_of));
+                let traced =
+                    traces.as_ref().and_then(|_| traced()).filter(|traced| traced.near.ncols() == near.ncols());
+                traces = traces.zip(traced).map(|(all, traced)| all.into_iter().chain([traced]).collect());
             }
             None => {
                 (complete, traces) = (false, None);
@@ -131,6 +132,13 @@ pub fn loose_motions(structure: &Structure, dofs: &Dofs, joints: &[Joint], effor
     }
     LooseMotions { motions, complete, traces }
 }
+
+/// Most unknowns of parts that are held by something and traced beyond f64: the numbers get longer by some 60 digits of two
+/// with each of the equations that are solved.
+const MOST_TRACED: usize = 60;
+
+/// Grid on which the centre of parts lies that are traced beyond f64, as a share of their size.
+const GRID: f64 = 1.0 / 256.0;
 
 /// A part and the line about which it does not turn.
 type Spin = (u32, [f64; 3]);
@@ -219,21 +227,11 @@ impl Cluster {
     }
 }
 
-/// The terms of a multiple.
-fn times(factor: f64, terms: Terms) -> impl Iterator<Item = (usize, f64)> {
-    let parts = terms.into_iter().flat_map(move |(unknown, a)| {
-        let product = Doubled::product(factor, a);
-        [(unknown, product.to_f64()), (unknown, product.tail())]
-    });
-    parts.filter(|(_, a)| *a != 0.0)
-}
-
 fn negative(terms: Terms) -> impl Iterator<Item = (usize, f64)> {
     terms.into_iter().map(|(unknown, a)| (unknown, -a))
 }
 
 /// The unknowns of a cluster: translations and scaled rotations of each part, all of the first part, then of the next …
-/// The terms of what is made of them add up exactly, those of one unknown too: a lever has two, and so has a product.
 struct Unknowns<'a> {
     structure: &'a Structure,
     dofs: &'a Dofs,
@@ -243,8 +241,11 @@ struct Unknowns<'a> {
     count: usize,
     /// The point about which parts turn.
     centre: [f64; 3],
-    /// Distance from there to the farthest node, up to the next power of two: rotations are scaled by it.
+    /// Distance from there to the farthest node: rotations are scaled by it.
     size: f64,
+    /// Whether the terms of what is made of them add up to it exactly, those of one unknown too: a lever may have two then, and
+    /// so may a product.
+    exact: bool,
 }
 
 impl<'a> Unknowns<'a> {
@@ -254,7 +255,7 @@ impl<'a> Unknowns<'a> {
         let centre: [f64; 3] = std::array::from_fn(|c| cluster.nodes.iter().map(|&n| place(n)[c]).sum::<f64>() / count);
         let distance = |node: &usize| distance(centre, place(*node));
         let size = cluster.nodes.iter().map(distance).fold(0.0, f64::max);
-        let size = if size > 0.0 { size.log2().ceil().exp2() } else { 1.0 };
+        let size = if size > 0.0 { size } else { 1.0 };
         let mut of_part = HashMap::with_capacity(cluster.parts.len());
         let mut count = 0;
         for &part in &cluster.parts {
@@ -266,7 +267,30 @@ impl<'a> Unknowns<'a> {
             }
             of_part.insert(part, unknowns);
         }
-        Unknowns { structure, dofs, parts, of_part, count, centre, size }
+        Unknowns { structure, dofs, parts, of_part, count, centre, size, exact: false }
+    }
+
+    /// The same to the last digit: the size is a power of two, and the centre lies on a grid, so that levers stay short.
+    fn exactly(&self) -> Unknowns<'a> {
+        let size = self.size.log2().ceil().exp2();
+        let grid = size * GRID;
+        let centre = self.centre.map(|x| (x / grid).round() * grid);
+        Unknowns { of_part: self.of_part.clone(), centre, size, exact: true, ..*self }
+    }
+
+    /// What the motions do to the joints, from those at each node; `None` where many equations hold the cluster.
+    fn traces(
+        &self,
+        cluster: &Cluster,
+        spins: &[Spin],
+        (joints, joints_of): (&[Joint], &[Vec<usize>]),
+    ) -> Option<Traces> {
+        let rows = self.rows(cluster, spins);
+        if !rows.is_empty() && self.count > MOST_TRACED {
+            return None;
+        }
+        let near = self.null_space(cluster, &rows, EFFORT)?;
+        Some(Traces { joints: self.moved_joints(cluster, joints, joints_of), rows, near })
     }
 
     /// What holds the cluster: each row is 0.
@@ -305,7 +329,7 @@ impl<'a> Unknowns<'a> {
         near.column_iter().map(motion).collect()
     }
 
-    /// The mutual displacement of every joint that the cluster moves, from those at each node.
+    /// The mutual displacement of every joint that the cluster moves.
     fn moved_joints(&self, cluster: &Cluster, joints: &[Joint], joints_of: &[Vec<usize>]) -> Vec<(usize, Terms)> {
         let own: HashSet<usize> = cluster.nodes.iter().copied().collect();
         let touched: BTreeSet<usize> = cluster.nodes.iter().flat_map(|&node| joints_of[node].iter().copied()).collect();
@@ -314,7 +338,7 @@ impl<'a> Unknowns<'a> {
             let mut row = Terms::new();
             for (node, a) in joints[index].terms.iter().filter(|(node, _)| own.contains(node)) {
                 for (&component, a) in self.structure.dimension.translations().iter().zip(a) {
-                    row.extend(times(*a, self.of_node(*node, component).unwrap_or_default()));
+                    row.extend(self.times(*a, self.of_node(*node, component).unwrap_or_default()));
                 }
             }
             if !row.is_empty() {
@@ -322,6 +346,18 @@ impl<'a> Unknowns<'a> {
             }
         }
         moved
+    }
+
+    /// A number, and what rounding leaves of it where that counts.
+    fn parts_of(&self, number: Doubled) -> impl Iterator<Item = f64> {
+        let rest = Some(number.tail()).filter(|rest| self.exact && *rest != 0.0);
+        std::iter::once(number.to_f64()).chain(rest)
+    }
+
+    /// The terms of a multiple.
+    fn times(&self, factor: f64, terms: Terms) -> impl Iterator<Item = (usize, f64)> {
+        let of_term = move |(unknown, a)| self.parts_of(Doubled::product(factor, a)).map(move |part| (unknown, part));
+        terms.into_iter().flat_map(of_term)
     }
 
     /// Displacement of a node as it moves with a part; rotations are multiplied by `size`.
@@ -332,10 +368,11 @@ impl<'a> Unknowns<'a> {
         if !component.is_rotation() {
             let arm = std::array::from_fn(|c| Doubled::sum(place[c], -self.centre[c]));
             for (rotation, lever) in component.levers(arm) {
-                terms.extend([lever.to_f64(), lever.tail()].map(|part| (unknowns[rotation as usize], part / self.size)));
+                let parts = self.parts_of(lever).map(|part| (unknowns[rotation as usize], part / self.size));
+                terms.extend(parts);
             }
         }
-        terms.retain(|(unknown, a)| *unknown != usize::MAX && *a != 0.0);
+        terms.retain(|(unknown, _)| *unknown != usize::MAX);
         terms
     }
 
@@ -432,9 +469,10 @@ impl<'a> Unknowns<'a> {
         }
         let springs = cluster.springs.iter().map(|&spring| &self.structure.springs[spring]);
         for spring in springs.filter(|spring| spring.stiffness > 0.0) {
-            let terms = spring.terms.iter().filter_map(|term| {
-                Some(times(term.factor, self.of_node(term.node, term.component)?))
-            });
+            let terms = spring
+                .terms
+                .iter()
+                .filter_map(|term| Some(self.times(term.factor, self.of_node(term.node, term.component)?)));
             rows.push(terms.flatten().collect());
         }
         for tie in cluster.ties.iter().map(|&tie| &self.structure.ties[tie]) {
