@@ -30,7 +30,7 @@ use crate::contact::on_cone::widest_cone_pairs;
 use crate::contact::problem::ContactProblem;
 use crate::contact::sum::Sum;
 use crate::lcp::exact::dyadic::Dyadic;
-use crate::lcp::linear_program::{LinearProgram, Outcome};
+use crate::lcp::linear_program::{LinearProgram, Outcome, TOLERANCE};
 
 /// A margin below this share of the motion is looked at more closely: the program cannot tell it from 0.
 const UNCLEAR: f64 = 1e-5;
@@ -40,6 +40,8 @@ const ZOOMS: [f64; 2] = [1e6, 1e9];
 const CLEAR: f64 = 1e-7;
 /// An inequality that can be slack by no more than this share must hold as an equation.
 const TIGHT: f64 = 1e-6;
+/// A room that the program can tell from none.
+const ROOM: f64 = 10.0 * TOLERANCE;
 
 /// Looks for a certificate. In the plane a problem whose normal forces the load decides is left to the search through
 /// its schemes.
@@ -289,8 +291,8 @@ impl<'a> MotionProgram<'a> {
         program.set_costs(surplus.iter().map(|(k, a)| (*k, -a)));
         let mut x = self.solve(&program)?;
         let surplus_at = |x: &[f64]| surplus.iter().map(|(k, a)| a * x[*k]).sum::<f64>();
-        // Just beyond a limit little is left over: likewise looked at more closely.
-        let zoom = (surplus_at(&x) <= UNCLEAR).then_some(ZOOMS[0]);
+        // Just beyond a limit little is left over, and the program could not tell what has no room beside it.
+        let zoom = (TIGHT * surplus_at(&x) <= ROOM).then_some(ZOOMS[0]);
         if let Some(zoom) = zoom {
             x = program.refined(&x, zoom, self.seconds())?;
         }
