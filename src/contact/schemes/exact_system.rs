@@ -17,15 +17,8 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::rows::{RowId, RowKind};
 use crate::contact::schemes::ball::Ball;
 use crate::contact::schemes::scheme::{PairScheme, Tangential, slip_forms};
+use crate::contact::schemes::telling::telling_joints;
 use crate::contact::system::{ContactPair, ContactSystem};
-
-/// Entries of the kernel this close to a whole number are that number: they come out of f64 linear algebra.
-const WHOLE: f64 = 64.0 * f64::EPSILON;
-
-/// Least pivot of the elimination that tells the motions apart, as a share of the largest there is.
-const SAFE: f64 = 0.1;
-/// Most products of entries with which rows are compared at a step of it.
-const MOST_COMPARED: usize = 1_000_000;
 
 /// λ = R z + constants, exactly.
 pub(crate) struct ExactSystem<'a> {
@@ -341,67 +334,4 @@ pub(crate) fn give_kernel(stiffness: &mut [Vec<BigRational>], telling: &[usize],
             stiffness[p][other] = -product(motion, column);
         }
     }
-}
-
-/// Rows P of Z with a safe inverse, and Z Z_P⁻¹; `None` without a kernel. Rows that are parallel become 0 together where they
-/// are not P: what a rotation about the anchor of a spring does to the pair there, which only slides across the spring, is 0
-/// then and not what rounding leaves of two columns.
-pub(crate) fn telling_joints(kernel: &DMatrix<f64>) -> Option<(Vec<usize>, DMatrix<f64>)> {
-    let (k, r) = kernel.shape();
-    if r == 0 {
-        return None;
-    }
-    // Gauss–Jordan over the columns.
-    let mut z = kernel.clone();
-    let mut telling = Vec::with_capacity(r);
-    for column in 0..r {
-        let rows: Vec<usize> = (0..k).filter(|i| !telling.contains(i)).collect();
-        let (row, from, size) = lead(&z, column, &rows);
-        if size <= WHOLE {
-            return None; // dependent columns: an orthonormal basis never is
-        }
-        z.swap_columns(column, from);
-        let pivot = z[(row, column)];
-        z.column_mut(column).iter_mut().for_each(|entry| *entry /= pivot);
-        let own = z.column(column).into_owned();
-        for j in (0..r).filter(|&j| j != column) {
-            let factor = z[(row, j)];
-            for i in 0..k {
-                z[(i, j)] -= factor * own[i];
-            }
-        }
-        telling.push(row);
-    }
-    for entry in z.iter_mut() {
-        if (*entry - entry.round()).abs() <= WHOLE {
-            *entry = entry.round();
-        }
-    }
-    Some((telling, z))
-}
-
-/// The pivot of an elimination of the columns from this one on, and its size: the largest entry of a row that most others are
-/// parallel to, among those that are not small; where there are too many, the largest entry of all.
-fn lead(z: &DMatrix<f64>, column: usize, rows: &[usize]) -> (usize, usize, f64) {
-    let left = z.columns_range(column..);
-    let entry = |row: usize| {
-        let from = (0..left.ncols()).rev().max_by(|&a, &b| left[(row, a)].abs().total_cmp(&left[(row, b)].abs()));
-        from.map_or((row, column, 0.0), |from| (row, column + from, left[(row, from)].abs()))
-    };
-    let largest = |a: &(usize, usize, f64), b: &(usize, usize, f64)| a.2.total_cmp(&b.2);
-    let leads: Vec<(usize, usize, f64)> = rows.iter().rev().map(|&row| entry(row)).collect();
-    let Some(first) = leads.iter().copied().max_by(largest) else { return (0, column, 0.0) };
-    if left.ncols() == 1 || rows.len().pow(2) * left.ncols() > MOST_COMPARED {
-        return first;
-    }
-    let parallel = |a: usize, b: usize, at: usize| {
-        let (share, size) = (left[(b, at)] / left[(a, at)], left.row(a).amax().max(left.row(b).amax()));
-        (0..left.ncols()).all(|j| (left[(b, j)] - share * left[(a, j)]).abs() <= WHOLE * size)
-    };
-    let moved: Vec<usize> = rows.iter().copied().filter(|&row| left.row(row).amax() > WHOLE).collect();
-    let count =
-        |&(row, from, _): &(usize, usize, f64)| moved.iter().filter(|&&b| parallel(row, b, from - column)).count();
-    let safe = leads.iter().copied().filter(|lead| lead.2 >= SAFE * first.2);
-    let counted: Vec<(usize, (usize, usize, f64))> = safe.map(|lead| (count(&lead), lead)).collect();
-    counted.into_iter().max_by(|a, b| a.0.cmp(&b.0).then(largest(&a.1, &b.1))).map_or(first, |(_, lead)| lead)
 }
