@@ -11,6 +11,8 @@ const MOST_COMPARED: usize = 1_000_000;
 
 /// A pivot: row, column, magnitude.
 type Pivot = (usize, usize, f64);
+/// Of the columns from the given one on, and the given rows.
+type Choice = fn(&DMatrix<f64>, usize, &[usize]) -> Pivot;
 
 /// Rows P of Z with a safe inverse, and Z Z_P⁻¹; `None` without a kernel.
 ///
@@ -18,15 +20,12 @@ type Pivot = (usize, usize, f64);
 /// the pair there, which only slides across the spring, is exactly 0 then, and not what rounding leaves of two columns. So where
 /// the largest pivots leave such rows, they are chosen among those first.
 pub(crate) fn telling_joints(kernel: &DMatrix<f64>) -> Option<(Vec<usize>, DMatrix<f64>)> {
-    let found = reduced(kernel, &largest)?;
-    if leaves_parallel_rows(&found.1) { reduced(kernel, &most_parallel).or(Some(found)) } else { Some(found) }
+    let found = reduced(kernel, largest)?;
+    if leaves_parallel_rows(&found.1) { reduced(kernel, most_parallel).or(Some(found)) } else { Some(found) }
 }
 
 /// Gauss–Jordan over the columns; a pivot comes from the columns from the given one on, and from the given rows.
-fn reduced(
-    kernel: &DMatrix<f64>,
-    lead: &dyn Fn(&DMatrix<f64>, usize, &[usize]) -> Pivot,
-) -> Option<(Vec<usize>, DMatrix<f64>)> {
+fn reduced(kernel: &DMatrix<f64>, lead: Choice) -> Option<(Vec<usize>, DMatrix<f64>)> {
     let (k, r) = kernel.shape();
     if r == 0 {
         return None;
