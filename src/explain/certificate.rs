@@ -30,7 +30,7 @@ use crate::contact::on_cone::widest_cone_pairs;
 use crate::contact::problem::ContactProblem;
 use crate::contact::sum::Sum;
 use crate::lcp::exact::dyadic::Dyadic;
-use crate::lcp::linear_program::{LinearProgram, Outcome};
+use crate::lcp::linear_program::{LinearProgram, Outcome, TOLERANCE};
 
 /// A margin below this share of the motion is looked at more closely: the program cannot tell it from 0.
 const UNCLEAR: f64 = 1e-5;
@@ -40,6 +40,8 @@ const ZOOMS: [f64; 2] = [1e6, 1e9];
 const CLEAR: f64 = 1e-7;
 /// An inequality that can be slack by no more than this share must hold as an equation.
 const TIGHT: f64 = 1e-6;
+/// A room that the program can tell from none.
+const ROOM: f64 = 10.0 * TOLERANCE;
 
 /// Looks for a certificate. In the plane a problem whose normal forces the load decides is left to the search through
 /// its schemes.
@@ -165,7 +167,7 @@ fn combined(row: &[Entry], factor: f64, other: &[Entry]) -> Terms {
 }
 
 fn exactly(row: &[Entry]) -> Vec<(usize, Dyadic)> {
-    row.iter().map(|entry| (entry.motion, Dyadic::from(entry.part.value))).collect()
+    row.iter().map(|entry| (entry.motion, entry.exact.clone())).collect()
 }
 
 impl<'a> MotionProgram<'a> {
@@ -287,9 +289,15 @@ impl<'a> MotionProgram<'a> {
         let slacks = self.slacks();
         slacks.iter().for_each(|slack| slack.demand(&mut program, None));
         program.set_costs(surplus.iter().map(|(k, a)| (*k, -a)));
-        let x = self.solve(&program)?;
-        let most: f64 = surplus.iter().map(|(k, a)| a * x[*k]).sum();
-        if most <= CLEAR {
+        let mut x = self.solve(&program)?;
+        let surplus_at = |x: &[f64]| surplus.iter().map(|(k, a)| a * x[*k]).sum::<f64>();
+        // Just beyond a limit little is left over, and the program could not tell what has no room beside it.
+        let zoom = (TIGHT * surplus_at(&x) <= ROOM).then_some(ZOOMS[0]);
+        if let Some(zoom) = zoom {
+            x = program.refined(&x, zoom, self.seconds())?;
+        }
+        let (most, clear) = (surplus_at(&x), CLEAR / zoom.unwrap_or(1.0));
+        if most <= clear {
             return None;
         }
         // As much room as there can be in all inequalities at once.
@@ -303,9 +311,13 @@ impl<'a> MotionProgram<'a> {
             rooms.push(room);
         }
         program.at_most(surplus.iter().map(|(k, a)| (*k, -a)).collect(), -0.5 * most);
-        let x = self.solve(&program)?;
+        let mut x = self.solve(&program)?;
+        let mut none = TIGHT * most;
+        if let Some(zoom) = zoom {
+            (x, none) = (program.refined(&x, zoom, self.seconds())?, f64::max(none, clear));
+        }
         let tight: Vec<&Slack> =
-            slacks.iter().zip(&rooms).filter(|(_, room)| x[**room] < TIGHT * most).map(|(s, _)| s).collect();
+            slacks.iter().zip(&rooms).filter(|(_, room)| x[**room] < none).map(|(s, _)| s).collect();
         self.proof(&x, &tight)
     }
 

@@ -57,7 +57,7 @@ impl Equations {
     }
 
     /// The solution whose free unknowns are those of `near`; the others follow from the equations.
-    pub fn nearest(self, near: &[f64]) -> Solved {
+    pub fn nearest(&self, near: &[f64]) -> Solved {
         if self.rows.is_empty() {
             return Solved::Free;
         }

@@ -11,9 +11,11 @@ use std::time::Instant;
 use super::exact_equations::{Equations, Solved};
 use super::proof::BUDGET;
 use crate::contact::problem::ContactProblem;
+use crate::contact::system::ContactSystem;
 use crate::lcp::exact::dyadic::Dyadic;
 use crate::lcp::linear_program::{LinearProgram, Outcome};
 use crate::lcp::problem::NOISE;
+use crate::text::words::{list, short};
 
 /// An s_n below this share of the largest must be 0.
 const TIGHT: f64 = 1e-6;
@@ -25,6 +27,15 @@ pub struct Misfit {
     pub pairs: Vec<usize>,
     /// sᵀ_n g + sᵀ h with the largest s_n = 1: minus the overlap, < 0.
     pub room: f64,
+}
+
+impl Misfit {
+    /// In words.
+    pub fn words(&self, system: &ContactSystem) -> String {
+        let ids: Vec<String> = self.pairs.iter().map(|&pair| system.pairs[pair].id.clone()).collect();
+        let (ids, room) = (list(&ids), short(self.room));
+        format!("whatever moves, the distances of pairs {ids} sum up to {room}, and none of them may be negative")
+    }
 }
 
 /// What s times gaps and common displacements of the joints sums, per unit of each μ, and its terms.

@@ -5,6 +5,7 @@ pub mod balance;
 pub mod certificate;
 mod exact_certificate;
 mod exact_equations;
+mod exact_motions;
 pub mod kernel;
 mod known_normals;
 pub mod loose;

@@ -5,10 +5,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::exact_motions::{ZERO, exact_motions};
 use super::kernel::clean;
 use crate::contact::sum::Sum;
 use crate::contact::system::ContactSystem;
 use crate::fem::MainSystem;
+use crate::lcp::exact::dyadic::Dyadic;
 use crate::lcp::problem::NOISE;
 use crate::model::pair::joints;
 use crate::model::structure::Structure;
@@ -16,8 +18,6 @@ use crate::model::structure::Structure;
 /// A motion found as an eigenvector is known to about this share of its largest displacement: the rounding of R over
 /// the distance of its zero eigenvalue to the next (1e-16 / 1e-10).
 const EIGENVECTOR: f64 = 1e-6;
-/// A sum below this multiple of the magnitudes of its terms is zero.
-const ZERO: f64 = 8.0 * f64::EPSILON;
 
 /// An entry of a motion below this share of its largest is rounding.
 const ROUNDING: f64 = 1e-11;
@@ -31,12 +31,21 @@ pub fn direction_of(motion: DVector<f64>) -> DVector<f64> {
 }
 
 /// The part of one motion in the displacement of one joint.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// Index of the motion.
     pub motion: usize,
     /// Mutual displacement of the joint per unit of the motion, with the magnitudes of its terms.
     pub part: Sum,
+    /// The same as proofs take it: of the parts of a structure to the last digit, else the f64 number.
+    pub exact: Dyadic,
+}
+
+impl Entry {
+    /// A number that counts as exact.
+    fn of(motion: usize, part: Sum) -> Entry {
+        Entry { motion, part, exact: Dyadic::from(part.value) }
+    }
 }
 
 /// Motions that cost no energy, joint by joint.
@@ -57,6 +66,14 @@ impl FreeMotions {
 
     fn of_structure(structure: &Structure, main: &MainSystem) -> FreeMotions {
         let motions = main.kernel_motions();
+        if let Some(rows) = main.traces().and_then(|traces| exact_motions(traces, main.joint_count())) {
+            let entry = |(motion, exact): (usize, Dyadic)| {
+                let value = exact.to_f64();
+                Entry { motion, part: Sum::exactly(value), exact }
+            };
+            let rows = rows.into_iter().map(|row| row.into_iter().map(entry).collect()).collect();
+            return FreeMotions { rows, count: motions.len() };
+        }
         let known = |internal: bool| if internal { EIGENVECTOR / NOISE } else { 1.0 };
         let rows = joints(&structure.pairs)
             .iter()
@@ -70,7 +87,7 @@ impl FreeMotions {
                     }
                     let value = if sum.value.abs() <= ZERO * sum.magnitude { 0.0 } else { sum.value };
                     let magnitude = sum.magnitude * known(motion.internal);
-                    (magnitude > 0.0).then_some(Entry { motion: k, part: Sum { value, magnitude } })
+                    (magnitude > 0.0).then_some(Entry::of(k, Sum { value, magnitude }))
                 };
                 motions.iter().zip(0..).filter_map(entry).collect()
             })
@@ -92,7 +109,7 @@ impl FreeMotions {
                 let entry = |motion: usize| {
                     let counts = simple[(joint, motion)] != 0.0 || force(joint, motion) > NOISE * largest[motion];
                     let part = Sum { value: kernel[(joint, motion)], magnitude: 1.0 };
-                    counts.then_some(Entry { motion, part })
+                    counts.then_some(Entry::of(motion, part))
                 };
                 (0..kernel.ncols()).filter_map(entry).collect()
             })

@@ -387,13 +387,7 @@ impl RayReport {
         match self.verdict {
             Some(Verdict::Certified) if self.misfit.is_some() => {
                 if let Some(misfit) = &self.misfit {
-                    let ids: Vec<String> = misfit.pairs.iter().map(|&pair| system.pairs[pair].id.clone()).collect();
-                    text += &format!(
-                        " Proved: the parts do not fit together. Whatever moves, the distances of pairs {} sum up to {}, and none \
-                         of them may be negative.",
-                        list(&ids),
-                        short(misfit.room)
-                    );
+                    text += &format!(" Proved: the parts do not fit together: {}.", misfit.words(system));
                 }
             }
             Some(Verdict::Certified) => {

@@ -30,7 +30,7 @@ impl Kinematics {
     pub fn new(structure: &Structure, joints: &[Joint], watch: &dyn Watch) -> Result<Kinematics, MainSystemError> {
         watch.progress(&format!("looking at {} elements", structure.elements.len()), 0.0);
         let outline = Outline::new(structure, joints, watch)?;
-        let loose = loose_motions(structure, &outline.dofs, EFFORT);
+        let loose = loose_motions(structure, &outline.dofs, &[], EFFORT);
         kernel::rigid_kernel(structure, &outline.joints, &loose.motions)?;
         Ok(Kinematics { outline, loose })
     }

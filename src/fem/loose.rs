@@ -8,14 +8,19 @@
 //! that took too long or lost too many digits, elements joined by common nodes are taken as one part; its internal
 //! mechanisms, if it has any, are found from the eigenvalues of R instead (see `main_system`), known to fewer digits.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+use nalgebra::{DMatrix, DVectorView};
 
 use super::contrast::Stiffnesses;
 use super::dof::Dofs;
 use super::idle_spins::idle_spins;
 use super::null_space::{DENSE, Terms, null_space};
 use super::parts::{Parts, superelement_parts};
+use super::traces::Traces;
+use crate::doubled::Doubled;
 use crate::model::groups::Groups;
+use crate::model::pair::Joint;
 use crate::model::space_section::EndJoint;
 use crate::model::structure::{Component, Dimension, ElementKind, Structure};
 use crate::model::superelement::Part;
@@ -54,6 +59,9 @@ pub struct LooseMotions {
     pub motions: Vec<Motion>,
     /// Whether all parts were looked at one by one, so that no mechanism among them can have been missed.
     pub complete: bool,
+    /// Of each cluster what its motions do to the joints, in the order of `motions`; `None` where that is not known
+    /// beyond f64.
+    pub traces: Option<Vec<Traces>>,
 }
 
 impl LooseMotions {
@@ -84,31 +92,53 @@ pub fn shortest_side(structure: &Structure) -> f64 {
     structure.elements.iter().map(|element| of_element(&element.nodes)).fold(f64::INFINITY, f64::min)
 }
 
-/// The motions from the parts, one by one where that takes no more than `effort` additions.
-pub fn loose_motions(structure: &Structure, dofs: &Dofs, effort: usize) -> LooseMotions {
+/// The motions from the parts, one by one where that takes no more than `effort` additions, and what they do to `joints`.
+pub fn loose_motions(structure: &Structure, dofs: &Dofs, joints: &[Joint], effort: usize) -> LooseMotions {
     let parts = Parts::new(structure);
     let clusters = parts.clusters(structure);
     let spins: Vec<Spin> = idle_spins(structure, &parts).into_iter().map(|spin| (spin.part, spin.axis)).collect();
     let (mut motions, mut complete) = (Vec::new(), true);
+    // The stiffness of a superelement is given in numbers, not by geometry.
+    let mut traces = structure.superelement.is_none().then(Vec::<Traces>::new);
+    let mut joints_of = vec![Vec::new(); structure.nodes.len()];
+    for (index, joint) in joints.iter().enumerate() {
+        joint.terms.iter().for_each(|(node, _)| joints_of[*node].push(index));
+    }
     for cluster in clusters {
         let unknowns = Unknowns::of(&cluster, structure, dofs, &parts);
         // An elimination cannot be sure of the rank.
         complete &= unknowns.count <= DENSE;
-        match unknowns.null_space(&cluster, &spins, effort) {
-            Some(space) => motions.extend(space),
+        let rows = unknowns.rows(&cluster, &spins);
+        match unknowns.null_space(&cluster, &rows, effort) {
+            Some(near) => {
+                motions.extend(unknowns.motions(&cluster, &near));
+                let traced = || unknowns.exactly().traces(&cluster, &spins, (joints, &joints_of));
+                let traced =
+                    traces.as_ref().and_then(|_| traced()).filter(|traced| traced.near.ncols() == near.ncols());
+                traces = traces.zip(traced).map(|(all, traced)| all.into_iter().chain([traced]).collect());
+            }
             None => {
-                complete = false;
+                (complete, traces) = (false, None);
                 let (merged, cluster) = cluster.with_whole_groups(structure);
                 // What turns inside a group is not looked at, so neither is the spin of one on a line.
                 let lines = merged.lines(structure).into_iter().zip(0..);
                 let spins: Vec<Spin> = lines.filter_map(|(axis, part)| Some((part, axis?))).collect();
                 let unknowns = Unknowns::of(&cluster, structure, dofs, &merged);
-                motions.extend(unknowns.null_space(&cluster, &spins, usize::MAX).unwrap_or_default());
+                let rows = unknowns.rows(&cluster, &spins);
+                let near = unknowns.null_space(&cluster, &rows, usize::MAX);
+                motions.extend(near.iter().flat_map(|near| unknowns.motions(&cluster, near)));
             }
         }
     }
-    LooseMotions { motions, complete }
+    LooseMotions { motions, complete, traces }
 }
+
+/// Most unknowns of parts that are held by something and traced beyond f64: the numbers get longer by some 60 digits of two
+/// with each of the equations that are solved.
+const MOST_TRACED: usize = 60;
+
+/// Grid on which the centre of parts lies that are traced beyond f64, as a share of their size.
+const GRID: f64 = 1.0 / 256.0;
 
 /// A part and the line about which it does not turn.
 type Spin = (u32, [f64; 3]);
@@ -213,6 +243,9 @@ struct Unknowns<'a> {
     centre: [f64; 3],
     /// Distance from there to the farthest node: rotations are scaled by it.
     size: f64,
+    /// Whether the terms of what is made of them add up to it exactly, those of one unknown too: a lever may have two then, and
+    /// so may a product.
+    exact: bool,
 }
 
 impl<'a> Unknowns<'a> {
@@ -234,46 +267,110 @@ impl<'a> Unknowns<'a> {
             }
             of_part.insert(part, unknowns);
         }
-        Unknowns { structure, dofs, parts, of_part, count, centre, size }
+        Unknowns { structure, dofs, parts, of_part, count, centre, size, exact: false }
     }
 
-    /// Motions of the cluster; `None` where an elimination took more than `effort` additions or lost too many digits.
-    fn null_space(&self, cluster: &Cluster, spins: &[Spin], effort: usize) -> Option<Vec<Motion>> {
-        let structure = self.structure;
+    /// The same to the last digit: the size is a power of two, and the centre lies on a grid, so that levers stay short.
+    fn exactly(&self) -> Unknowns<'a> {
+        let size = self.size.log2().ceil().exp2();
+        let grid = size * GRID;
+        let centre = self.centre.map(|x| (x / grid).round() * grid);
+        Unknowns { of_part: self.of_part.clone(), centre, size, exact: true, ..*self }
+    }
+
+    /// What the motions do to the joints, from those at each node; `None` where many equations hold the cluster.
+    fn traces(
+        &self,
+        cluster: &Cluster,
+        spins: &[Spin],
+        (joints, joints_of): (&[Joint], &[Vec<usize>]),
+    ) -> Option<Traces> {
+        let rows = self.rows(cluster, spins);
+        if !rows.is_empty() && self.count > MOST_TRACED {
+            return None;
+        }
+        let near = self.null_space(cluster, &rows, EFFORT)?;
+        Some(Traces { joints: self.moved_joints(cluster, joints, joints_of), rows, near })
+    }
+
+    /// What holds the cluster: each row is 0.
+    fn rows(&self, cluster: &Cluster, spins: &[Spin]) -> Vec<Terms> {
         let mut rows: Vec<Terms> = [self.pins(cluster), self.given_resistance(), self.holders(cluster)].concat();
-        if structure.dimension == Dimension::Space {
+        if self.structure.dimension == Dimension::Space {
             rows.extend(self.torsions(cluster));
             let own = spins.iter().filter(|(part, _)| self.of_part.contains_key(part));
             rows.extend(own.map(|&(part, axis)| self.spin(part, axis).collect::<Terms>()));
         }
-        let places = cluster.nodes.iter().flat_map(|&n| structure.nodes[n].position);
+        rows
+    }
+
+    /// The null space of the rows; `None` where an elimination took more than `effort` additions or lost too many digits.
+    fn null_space(&self, cluster: &Cluster, rows: &[Terms], effort: usize) -> Option<DMatrix<f64>> {
+        let places = cluster.nodes.iter().flat_map(|&n| self.structure.nodes[n].position);
         let largest = places.fold(0.0_f64, |m, x| m.max(x.abs()));
         let null = NULL * (1.0 + largest / self.size);
-        let space = null_space(&rows, self.count, null, effort)?;
-        if self.count > DENSE && !space.is_of(&rows, null) {
-            return None;
-        }
-        let motions = space.basis.column_iter().map(|q| {
-            let mut u = vec![[0.0; 6]; structure.nodes.len()];
+        let space = null_space(rows, self.count, null, effort)?;
+        (self.count <= DENSE || space.is_of(rows, null)).then_some(space.basis)
+    }
+
+    /// The motions of the cluster from the null space.
+    fn motions(&self, cluster: &Cluster, near: &DMatrix<f64>) -> Vec<Motion> {
+        let motion = |q: DVectorView<'_, f64>| {
+            let mut u = vec![[0.0; 6]; self.structure.nodes.len()];
             for &node in &cluster.nodes {
-                for &component in structure.dimension.components() {
+                for &component in self.structure.dimension.components() {
                     let terms = self.of_node(node, component).unwrap_or_default();
                     let moved = terms.into_iter().map(|(i, a)| a * q[i]).sum::<f64>();
                     u[node][component as usize] = if component.is_rotation() { moved / self.size } else { moved };
                 }
             }
             Motion { u, internal: false }
-        });
-        Some(motions.collect())
+        };
+        near.column_iter().map(motion).collect()
+    }
+
+    /// The mutual displacement of every joint that the cluster moves.
+    fn moved_joints(&self, cluster: &Cluster, joints: &[Joint], joints_of: &[Vec<usize>]) -> Vec<(usize, Terms)> {
+        let own: HashSet<usize> = cluster.nodes.iter().copied().collect();
+        let touched: BTreeSet<usize> = cluster.nodes.iter().flat_map(|&node| joints_of[node].iter().copied()).collect();
+        let mut moved = Vec::new();
+        for index in touched {
+            let mut row = Terms::new();
+            for (node, a) in joints[index].terms.iter().filter(|(node, _)| own.contains(node)) {
+                for (&component, a) in self.structure.dimension.translations().iter().zip(a) {
+                    row.extend(self.times(*a, self.of_node(*node, component).unwrap_or_default()));
+                }
+            }
+            if !row.is_empty() {
+                moved.push((index, row));
+            }
+        }
+        moved
+    }
+
+    /// A number, and what rounding leaves of it where that counts.
+    fn parts_of(&self, number: Doubled) -> impl Iterator<Item = f64> {
+        let rest = Some(number.tail()).filter(|rest| self.exact && *rest != 0.0);
+        std::iter::once(number.to_f64()).chain(rest)
+    }
+
+    /// The terms of a multiple.
+    fn times(&self, factor: f64, terms: Terms) -> impl Iterator<Item = (usize, f64)> {
+        let of_term = move |(unknown, a)| self.parts_of(Doubled::product(factor, a)).map(move |part| (unknown, part));
+        terms.into_iter().flat_map(of_term)
     }
 
     /// Displacement of a node as it moves with a part; rotations are multiplied by `size`.
     fn moved(&self, node: usize, part: u32, component: Component) -> Terms {
         let unknowns = self.of_part[&part];
-        let arm = way(self.centre, self.structure.nodes[node].position).map(|arm| arm / self.size);
+        let place = self.structure.nodes[node].position;
         let mut terms = vec![(unknowns[component as usize], 1.0)];
         if !component.is_rotation() {
-            terms.extend(component.levers(arm).map(|(rotation, lever)| (unknowns[rotation as usize], lever)));
+            let arm = std::array::from_fn(|c| Doubled::sum(place[c], -self.centre[c]));
+            for (rotation, lever) in component.levers(arm) {
+                let parts = self.parts_of(lever).map(|part| (unknowns[rotation as usize], part / self.size));
+                terms.extend(parts);
+            }
         }
         terms.retain(|(unknown, _)| *unknown != usize::MAX);
         terms
@@ -372,10 +469,10 @@ impl<'a> Unknowns<'a> {
         }
         let springs = cluster.springs.iter().map(|&spring| &self.structure.springs[spring]);
         for spring in springs.filter(|spring| spring.stiffness > 0.0) {
-            let terms = spring.terms.iter().filter_map(|term| {
-                let terms = self.of_node(term.node, term.component)?;
-                Some(terms.into_iter().map(|(i, a)| (i, term.factor * a)))
-            });
+            let terms = spring
+                .terms
+                .iter()
+                .filter_map(|term| Some(self.times(term.factor, self.of_node(term.node, term.component)?)));
             rows.push(terms.flatten().collect());
         }
         for tie in cluster.ties.iter().map(|&tie| &self.structure.ties[tie]) {

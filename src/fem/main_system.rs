@@ -28,6 +28,7 @@ use super::refinement::{Refinement, Verdict};
 use super::repeated::Repeated;
 use super::sparse::SymmetricSparse;
 use super::threads::both;
+use super::traces::Traces;
 use crate::doubled::Doubled;
 use crate::model::pair::Joint;
 use crate::model::structure::{Component, Structure};
@@ -90,6 +91,8 @@ pub struct MainSystem {
     /// Column j of `z` is B applied to Σ_i coefficients[(i, j)] · motion i; r × r.
     pub(super) coefficients: DMatrix<f64>,
     pub(super) motions: Vec<Motion>,
+    /// Those of the loose parts, as far as they are known beyond f64.
+    traces: Option<Arc<Vec<Traces>>>,
     seconds: Seconds,
 }
 
@@ -133,11 +136,11 @@ impl MainSystem {
         let (k, loose) = both(
             dofs.count(),
             || assemble_seen(structure, &dofs, &|| watch.stop(), |k| stiffnesses.take(k)),
-            || loose_motions(structure, &dofs, effort),
+            || loose_motions(structure, &dofs, all_joints, effort),
         );
         let k = k?;
         let no_others = loose.are_all(structure, &stiffnesses);
-        let motions = loose.motions;
+        let (motions, traces) = (loose.motions, loose.traces.map(Arc::new));
         let rigid = kernel::rigid_kernel(structure, &joints, &motions)?;
         let mut main = main_matrices(&k, &elimination);
         let seconds = Seconds { assemble: clock.elapsed().as_secs_f64(), ..Seconds::default() };
@@ -179,6 +182,7 @@ impl MainSystem {
             coefficients: rigid.coefficients.clone(),
             rigid,
             motions,
+            traces,
             seconds,
         };
         system.refuse_mechanisms(structure, watch)?;
@@ -293,6 +297,18 @@ impl MainSystem {
     /// joints, but in a convenient basis (translations, then rotations, part by part), not column by column.
     pub fn kernel_motions(&self) -> &[Motion] {
         &self.motions
+    }
+
+    /// What the motions do to all joints, cluster by cluster in their order, where that is known beyond f64.
+    pub fn traces(&self) -> Option<&[Traces]> {
+        let traces = self.traces.as_ref()?;
+        let count: usize = traces.iter().map(|cluster| cluster.near.ncols()).sum();
+        (count == self.motions.len()).then_some(traces)
+    }
+
+    /// How many joints the structure has, with those that are left out of R.
+    pub fn joint_count(&self) -> usize {
+        self.all_joints.len()
     }
 
     /// How much of each of the motions is in a motion of the joints, as far as it lies in the kernel.

@@ -68,6 +68,7 @@ mod repeated;
 mod sparse;
 mod superelement;
 mod threads;
+mod traces;
 mod watch;
 
 #[cfg(test)]
@@ -87,3 +88,4 @@ pub use main_system::{MainSystem, Seconds, Unknowns};
 pub use recovery::{ElementStress, MemberForces, NodeStress, Reaction};
 pub use repeated::Repeated;
 pub use sparse::SymmetricSparse;
+pub use traces::Traces;

@@ -394,7 +394,9 @@ fn said(kind: Kind, turns: &[Turn], history: &History, same: f64, load: ToAndFro
     let count = turns.len();
     match kind {
         Kind::ShakesDown => {
+            let hidden = history.stages.iter().skip(2 * count - 1).take(2).any(StageResult::rubs);
             let slips = match same {
+                SAME if hidden => "what slips under a force loses no more than rounding can make up".to_owned(),
                 SAME => "nothing slips under a force".to_owned(),
                 _ => format!("what slips under a force loses less than {same:e} of what its largest could on its way"),
             };

@@ -462,3 +462,31 @@ fn what_is_left_to_come_is_told() {
     let sentence = found["sentence"].as_str().unwrap();
     assert!(sentence.contains(&format!("together move it by {left:.1e} more")), "{sentence}");
 }
+
+/// A slider pressed by N on a rod with EA/L = 1 from a shoe that is pressed by 1 and holds: pushed to and fro by q it slips by
+/// q − N/2, and loses N/2 on each part of the way. Where that is 1e-13 of what the shoe could lose, it is not nothing that
+/// slips under a force, as it is for N = 0.
+#[test]
+fn a_loss_that_rounding_could_make_up_is_told_from_none() {
+    for (pressed, said) in
+        [(0.0, "nothing slips under a force"), (2e-13, "what slips under a force loses no more than rounding")]
+    {
+        let shoe = |id: &str, node: &str| json!({ "id": id, "node": node, "against": "ground", "normal": [0, 1], "friction": 0.5 });
+        let force = |at: &str, force: [f64; 2]| json!({ "point": { "at": at, "force": force } });
+        let text = scenario_text(json!({
+            "materials": { "m": { "E": 100, "nu": 0 } },
+            "sections": { "s": { "area": 0.01 } },
+            "nodes": { "slider": [0, 0], "shoe": [1, 0] },
+            "bars": [{ "id": "rod", "kind": "truss", "nodes": ["slider", "shoe"], "material": "m", "section": "s" }],
+            "contacts": [shoe("light", "slider"), shoe("heavy", "shoe")],
+            "loads": {
+                "own": { "items": [force("slider", [0.0, -pressed]), force("shoe", [0.0, -1.0])] },
+                "q": { "items": [force("slider", [1.0, 0.0])] }
+            }
+        }));
+        let mut session = lines::read(&text);
+        let found = report(&mut session, "cycle q -0.4..0.4").unwrap();
+        assert_eq!(found["kind"], "shakes-down", "{found}");
+        assert!(found["sentence"].as_str().unwrap().starts_with(said), "{found}");
+    }
+}

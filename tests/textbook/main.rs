@@ -24,6 +24,7 @@ mod loads;
 mod meshes;
 mod method;
 mod mortar;
+mod oblique_spring;
 mod pairs_at_a_node;
 mod plates;
 mod press_fit;

@@ -260,3 +260,25 @@ fn slides_to_its_stop(friction: f64) {
     // The slab is 30 · 1000 · 400 stiff along 2000: 30 of push shorten it by 0.005.
     near("lost", stage.dissipated, friction * 20.0 * 2.0, 0.005, 20.0);
 }
+
+/// A node between a floor 1 mm below and a ceiling that it would have to be 1.5 mm below: 1 − 1.5 mm is the room of both,
+/// wherever it moves.
+#[test]
+fn a_history_of_parts_that_do_not_fit_names_them() {
+    let side = |id: &str, y: i32, gap: f64| json!({ "id": id, "node": "n", "against": "ground", "normal": [0, y], "friction": 0.3, "gap": gap });
+    let case = Case::json(json!({
+        "materials": { "m": { "E": 1e5, "nu": 0 } },
+        "sections": { "s": { "area": 0.01, "inertia": 1e-4 } },
+        "nodes": { "root": [0, 0], "n": [2, 0] },
+        "bars": [{ "id": "bar", "nodes": ["root", "n"], "material": "m", "section": "s" }],
+        "supports": [{ "at": "root", "fixed": ["x", "y", "r"] }],
+        "contacts": [side("floor", 1, 0.001), side("ceiling", -1, -0.0015)],
+        "loads": { "P": { "items": [{ "point": { "at": "n", "force": [0, -1] } }] } }
+    }));
+    let values = case.scenario.parameter_values();
+    let refused = follow_factors(case.prepared.case(&case.scenario, &values), &Begin::Unloaded, &[vec![1.0]])
+        .expect_err("no room");
+    let expected = "the parts cannot be put together: whatever moves, the distances of pairs floor and ceiling sum up to -0.0005, \
+                    and none of them may be negative";
+    assert!(refused.to_string().ends_with(expected), "{refused}");
+}

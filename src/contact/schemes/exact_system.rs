@@ -18,10 +18,8 @@ use crate::contact::problem::ContactProblem;
 use crate::contact::rows::{RowId, RowKind};
 use crate::contact::schemes::ball::Ball;
 use crate::contact::schemes::scheme::{PairScheme, Tangential, slip_forms};
+use crate::contact::schemes::telling::telling_joints;
 use crate::contact::system::{ContactPair, ContactSystem};
-
-/// Entries of the kernel this close to a whole number are that number: they come out of f64 linear algebra.
-const WHOLE: f64 = 64.0 * f64::EPSILON;
 
 /// λ = R z + constants, exactly.
 pub(crate) struct ExactSystem<'a> {
@@ -354,46 +352,4 @@ pub(crate) fn give_kernel(stiffness: &mut [Vec<BigRational>], telling: &[usize],
             stiffness[p][other] = -product(motion, column);
         }
     }
-}
-
-/// Rows P of Z with a safe inverse, and Z Z_P⁻¹; `None` without a kernel.
-pub(crate) fn telling_joints(kernel: &DMatrix<f64>) -> Option<(Vec<usize>, DMatrix<f64>)> {
-    let (k, r) = kernel.shape();
-    if r == 0 {
-        return None;
-    }
-    // Gauss–Jordan over the columns with the largest entry as pivot.
-    let mut z = kernel.clone();
-    let mut telling = Vec::with_capacity(r);
-    for column in 0..r {
-        let mut best = (0, column, 0.0);
-        for j in column..r {
-            for i in (0..k).filter(|i| !telling.contains(i)) {
-                if z[(i, j)].abs() > best.2 {
-                    best = (i, j, z[(i, j)].abs());
-                }
-            }
-        }
-        let (row, from, size) = best;
-        if size <= WHOLE {
-            return None; // dependent columns: an orthonormal basis never is
-        }
-        z.swap_columns(column, from);
-        let pivot = z[(row, column)];
-        z.column_mut(column).iter_mut().for_each(|entry| *entry /= pivot);
-        let own = z.column(column).into_owned();
-        for j in (0..r).filter(|&j| j != column) {
-            let factor = z[(row, j)];
-            for i in 0..k {
-                z[(i, j)] -= factor * own[i];
-            }
-        }
-        telling.push(row);
-    }
-    for entry in z.iter_mut() {
-        if (*entry - entry.round()).abs() <= WHOLE {
-            *entry = entry.round();
-        }
-    }
-    Some((telling, z))
 }

@@ -10,6 +10,7 @@ pub(crate) mod exact_system;
 pub mod near;
 mod pruning;
 pub mod scheme;
+pub(crate) mod telling;
 
 #[cfg(test)]
 mod space_tests;

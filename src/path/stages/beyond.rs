@@ -95,7 +95,7 @@ impl Walk<'_> {
         }
         let w = vec![0.0; contact.rows.len()];
         let direction = RayDirection { entering: Variable::P, z, w, p: 0.0 };
-        Ok(ray::report(&problem, None, &contact, &direction, p))
+        Ok(ray::report(&problem, self.place.prepared.built(), &contact, &direction, p))
     }
 
     /// The answer of eq. (8) just beyond, in increments from the present slip, where there is one; the place it is at.

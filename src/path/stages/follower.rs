@@ -12,6 +12,7 @@ use super::standing::Laws;
 use crate::answer::pairs::JointState;
 use crate::answer::record::{OutcomeKind, PairState, Ray, RayClass, State, Verdict};
 use crate::contact::problem::ContactProblem;
+use crate::explain::misfit::misfit;
 use crate::path::change::{between, sentence, with_directions};
 use crate::path::start::PathError;
 use crate::solve::Prepared;
@@ -125,8 +126,12 @@ pub(super) trait Follower<'a> {
         let course = Course { factors: [factors.clone(), factors.clone()], gaps: [gaps.clone(), own] };
         let there = "the share of the interference that is put in";
         if let (_, Some((at, collapse))) = self.along(&course, &|_| 0.0).map_err(|error| broken_at(error, there))? {
-            let why =
-                if collapse.class == RayClass::Mechanism { format!(" ({})", collapse.mode) } else { String::new() };
+            let problem = self.place().laws.problem;
+            let why = match misfit(problem) {
+                Some(misfit) => format!(": {}", misfit.words(&problem.system)),
+                None if collapse.class == RayClass::Mechanism => format!(" ({})", collapse.mode),
+                None => String::new(),
+            };
             let how = format!("in a limit: the parts cannot be put together{why}");
             return Err(PathError::NoStart { name: "interference".to_owned(), at, how });
         }

@@ -87,6 +87,16 @@ impl StageResult {
         self.moments.iter().filter(|moment| !moment.changes.is_empty()).count()
     }
 
+    /// Whether some pair slips against a force.
+    pub fn rubs(&self) -> bool {
+        let slips = |state: State| matches!(state, State::SlipPlus | State::SlipMinus | State::Slip);
+        let pairs = self.moments.iter().flat_map(|moment| moment.pairs.iter().zip(&moment.way));
+        let rubs = |pair: &PairState, state, held: Option<State>| {
+            pair.bound > 0.0 && (slips(state) || held.is_some_and(slips))
+        };
+        pairs.into_iter().any(|(pair, &(state, held))| rubs(pair, state, held))
+    }
+
     /// What the pairs do between its moments, in order; stretches of no length are left out.
     pub fn schemes(&self) -> impl Iterator<Item = &[(State, Option<State>)]> {
         self.moments.windows(2).filter(|ends| ends[1].t > ends[0].t).map(|ends| &ends[1].way[..])

@@ -12,10 +12,10 @@ use std::collections::HashMap;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use super::MOST_MOTIONS;
 use super::forms::of_contact;
 use super::system::ProvedContact;
 use super::tree::{Sum, contradiction};
+use super::{MOST_MOTIONS, MOST_PAIRS_OF_MOTION};
 use crate::contact::law::TangentialJoint;
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
@@ -25,9 +25,6 @@ use crate::explain::ray::Built;
 use crate::lcp::exact::dyadic::{nearest, rational};
 use crate::lcp::exact::polyhedron::State;
 use crate::watch::Watch;
-
-/// Most pairs for which the motion is found by exact linear programming.
-const MOST_PAIRS: usize = 60;
 
 /// The proof.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +58,7 @@ pub fn collapse(
             return Some(proof);
         }
     }
-    if contact.ids.len() > MOST_PAIRS || contact.kernel.len() > MOST_MOTIONS {
+    if contact.ids.len() > MOST_PAIRS_OF_MOTION || contact.kernel.len() > MOST_MOTIONS {
         return None;
     }
     let stiffness = contact.exact_stiffness();

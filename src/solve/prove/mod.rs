@@ -35,6 +35,8 @@ pub const MOST_PAIRS: usize = 120;
 pub const MOST_ROWS: usize = 240;
 /// Most motions without energy of a structure whose answer is proved.
 pub const MOST_MOTIONS: usize = 48;
+/// Most pairs for which the motion of a collapse is found by exact linear programming.
+const MOST_PAIRS_OF_MOTION: usize = 60;
 /// Most pairs whose answers are all proved.
 pub const MOST_PAIRS_OF_ALL: usize = 12;
 /// Most rows of an LCP whose answers are all proved.

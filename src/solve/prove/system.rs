@@ -12,12 +12,15 @@ use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
+use super::MOST_PAIRS_OF_MOTION;
 use crate::contact::law::PairLaw;
 use crate::contact::polygon::Polygon;
 use crate::contact::problem::ContactProblem;
-use crate::contact::schemes::exact_system::{give_kernel, telling_joints};
+use crate::contact::schemes::exact_system::give_kernel;
+use crate::contact::schemes::telling::telling_joints;
 use crate::explain::motions::FreeMotions;
 use crate::explain::ray::Built;
+use crate::fem::MainSystem;
 use crate::lcp::exact::dyadic::{WholeRows, rational, rational_rows};
 use crate::lcp::exact::rational_solve::rank_modulo_prime;
 use crate::lcp::mirrored::MirroredLcp;
@@ -117,12 +120,18 @@ impl ProvedContact {
     }
 }
 
+/// Whether springs or pins leave parts several motions: those that are at rest somewhere are sums of them, to rounding.
+fn holds_loosely(main: &MainSystem) -> bool {
+    main.traces().is_some_and(|parts| parts.iter().any(|part| !part.rows.is_empty() && part.near.ncols() > 1))
+}
+
 /// The motions that cost nothing, over the joints: those of the parts of a structure, else a basis in which each has a
 /// joint of its own.
 fn kernel(problem: &ContactProblem, built: Built<'_>) -> Vec<DVector<f64>> {
     let system = &*problem.system;
     let k = system.joint_count();
-    if built.is_some() && system.kernel.ncols() > 0 {
+    let by_parts = |main| !holds_loosely(main) || system.pair_count() > MOST_PAIRS_OF_MOTION;
+    if built.is_some_and(|(_, main)| by_parts(main)) && system.kernel.ncols() > 0 {
         let motions = FreeMotions::new(system, built);
         let part = |motion: usize, joint: usize| {
             motions.row(joint).iter().find(|entry| entry.motion == motion).map_or(0.0, |entry| entry.part.value)
