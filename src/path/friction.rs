@@ -88,16 +88,23 @@ impl FrictionPath {
         let problem = contact_problem(system, &factors, values);
         let contact = contact_lcp(&problem, Covering::Ones).ok()?;
         let point = vertex(&contact.lcp, &self.schemes.get(scheme)?.basis)?;
-        let state = state_of(&problem, &contact, &point);
-        let mut pairs = pair_states(&problem, &contact, &state);
-        prepared.add_released_slips(&mut pairs, &problem, &state.z);
-        Some(pairs)
+        Some(pairs_of(prepared, &problem, &contact, &point))
     }
 
     /// How the path ended, in a sentence.
     pub fn end_sentence(&self) -> String {
         self.end.sentence(&self.name, self.intervals.last().map_or(self.start, |last| last.to))
     }
+}
+
+/// The pairs at a vertex. Where its scheme ends a variable is zero to rounding: below zero it would be a slip to the other side.
+fn pairs_of(prepared: &Prepared, problem: &ContactProblem, contact: &ContactLcp, point: &Point) -> Vec<PairState> {
+    let mut point = point.clone();
+    point.z.iter_mut().for_each(|z| *z = z.max(0.0));
+    let state = state_of(problem, contact, &point);
+    let mut pairs = pair_states(problem, contact, &state);
+    prepared.add_released_slips(&mut pairs, problem, &state.z);
+    pairs
 }
 
 /// Whether a name is that of a parameter on which the friction of some pair depends, and not of a load case.
@@ -265,10 +272,7 @@ impl Follower<'_> {
     }
 
     pub(super) fn pairs(&self, place: &Place) -> Vec<PairState> {
-        let state = state_of(&place.problem, &place.contact, &place.point);
-        let mut pairs = pair_states(&place.problem, &place.contact, &state);
-        self.case.prepared.add_released_slips(&mut pairs, &place.problem, &state.z);
-        pairs
+        pairs_of(self.case.prepared, &place.problem, &place.contact, &place.point)
     }
 
     fn follow(&mut self, path: &mut FrictionPath, mut basis: Basis, to: f64) -> Result<(), PathError> {

@@ -249,7 +249,7 @@ fn a_number_met_by_an_answer_of_its_own_ends_no_interval_too_early() {
         let (places, holds) = places(&found);
         assert_eq!((places.len(), holds.len()), (1, usize::from(expected.is_some())), "{found}");
         assert!((places[0] - 2.05).abs() < 1e-8, "{found}");
-        for ends in expected {
+        if let Some(ends) = expected {
             assert!(holds[0].iter().zip(ends).all(|(a, b)| (a - b).abs() < 1e-8), "{found}");
         }
     }
@@ -283,6 +283,33 @@ fn beyond_a_jump_the_next_answer_is_followed_and_others_are_named() {
     // Where there is no other one nothing is said.
     let found = report(&mut session, "find f 1..1.3 where state a = open").unwrap();
     assert!(!found["notes"].to_string().contains("several"), "{found}");
+}
+
+/// A weight W on springs and a slope of angle α, with a neighbour that is pressed on: it creeps until the springs hold what friction
+/// does not, and from f = tan α on both rest, friction W sin α. Nowhere is friction on the other side, whatever rounding
+/// leaves of the last slip.
+#[test]
+fn friction_does_not_turn_where_the_last_slip_ends() {
+    for k in 0..24 {
+        let (slope, weight) = (0.5676 - 0.01 * f64::from(k), 8.72 + 0.31 * f64::from(k));
+        let text = format!(
+            r#"{{ "format": "stickslip/1", "title": "slope", "parameters": {{ "f": 0.1 }}, "nodes": {{ "A": [2, 0], "B": [3, 0] }},
+                "springs": [ {{ "at": "A", "direction": [0, 1], "stiffness": 1000 }},
+                             {{ "at": "B", "direction": [0, 1], "stiffness": 1000 }},
+                             {{ "between": ["A", "B"], "direction": [1, 0], "stiffness": 200 }} ],
+                "contacts": [ {{ "id": "c", "node": "A", "against": "ground", "normal": [-{slope}, 1], "friction": "f" }},
+                              {{ "id": "d", "node": "B", "against": "ground", "normal": [0, 1], "friction": "0.5*f+0.05",
+                                 "gap": -0.01 }} ],
+                "loads": {{ "w": {{ "items": [ {{ "point": {{ "at": "A", "force": [0, -{weight}] }} }},
+                                               {{ "point": {{ "at": "B", "force": [0, -9.204] }} }} ] }} }} }}"#
+        );
+        let mut session = session(load_text("slope", &text, None).unwrap_or_else(|problems| panic!("{problems}")));
+        let found = report(&mut session, "envelope x_t c over f 0..0.8").unwrap();
+        let ends = ["least", "largest"].map(|end| number(&found["envelope"][0][end]["value"]));
+        let friction = weight * slope / slope.hypot(1.0);
+        let (size, other) = (ends[0].abs().max(ends[1].abs()), ends[0].abs().min(ends[1].abs()));
+        assert!((size - friction).abs() < 1e-12 * weight && other < 1e-12 * weight, "{slope}: {found}");
+    }
 }
 
 /// The dam slides where the water is f N/T times as heavy as water, and turns over its toe where the moments about that are
