@@ -7,10 +7,9 @@ use super::table::{Cell, Column, Row, Table};
 use crate::answer::rounding::largest;
 use crate::path::sensitivity::Sensitivity;
 
-/// Writes the derivatives with respect to `parameter`, or to all of them.
-pub fn write(out: &mut dyn Write, sensitivity: &Sensitivity, parameter: Option<&str>, style: &Style) -> io::Result<()> {
-    let chosen = sensitivity.parameters.iter().filter(|rate| parameter.is_none_or(|name| rate.parameter == name));
-    for (k, rate) in chosen.enumerate() {
+/// Writes the derivatives with respect to each parameter.
+pub fn write(out: &mut dyn Write, sensitivity: &Sensitivity, style: &Style) -> io::Result<()> {
+    for (k, rate) in sensitivity.parameters.iter().enumerate() {
         if k > 0 {
             writeln!(out)?;
         }

@@ -169,6 +169,9 @@ fn friction_that_is_an_expression_is_followed_exactly() {
 fn sensitivities_are_derivatives_of_expressions_too() {
     // z_t = (2 F + 10 − f W) L / (E A): dz_t/dF = 2 L / (E A) = 0.04, dz_t/df = −W L / (E A) = −2.
     let mut rig = Rig::new(BAR);
+    let named = report(&mut rig.0, "sensitivity f").expect("an answer");
+    assert_eq!(named["parameters"].as_array().unwrap().len(), 1, "{named}");
+    assert_eq!(named["parameters"][0]["parameter"], "f");
     let report = report(&mut rig.0, "sensitivity").expect("an answer");
     let rates = report["parameters"].as_array().expect("rates");
     let of = |name: &str| {

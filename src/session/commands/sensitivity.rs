@@ -56,16 +56,17 @@ impl Session {
             return Err(no_derivatives(name, &refusal));
         }
         let ground = self.ground(io.watch)?;
-        let found = sensitivity(ground.case(io.watch), &ground.solved)?;
+        let mut found = sensitivity(ground.case(io.watch), &ground.solved)?;
+        found.parameters.retain(|rate| parameter.is_none_or(|name| rate.parameter == name));
         if let Some(name) = parameter
-            && !found.parameters.iter().any(|rate| rate.parameter == name)
+            && found.parameters.is_empty()
         {
             let place = place_beside_laws(&self.now.scenario, name).unwrap_or_default();
             return Err(no_derivatives(name, &format!("the loads are not a linear function of it: {place}")));
         }
         io.show(&found, |out, style| {
             self.write_not_of_history("", out, style)?;
-            view::sensitivity::write(out, &found, parameter, style)
+            view::sensitivity::write(out, &found, style)
         })?;
         Ok(())
     }
