@@ -59,7 +59,7 @@ pub struct LooseMotions {
     pub motions: Vec<Motion>,
     /// Whether all parts were looked at one by one, so that no mechanism among them can have been missed.
     pub complete: bool,
-    /// Of each cluster what its motions do to the joints, in the order of `motions`; `None` where that is not known
+    /// Of each cluster that moves what its motions do to the joints, in the order of `motions`; `None` where that is not known
     /// beyond f64.
     pub traces: Option<Vec<Traces>>,
 }
@@ -112,10 +112,14 @@ pub fn loose_motions(structure: &Structure, dofs: &Dofs, joints: &[Joint], effor
         match unknowns.null_space(&cluster, &rows, effort) {
             Some(near) => {
                 motions.extend(unknowns.motions(&cluster, &near));
-                let traced = || unknowns.exactly().traces(&cluster, &spins, (joints, &joints_of));
-                let traced =
-                    traces.as_ref().and_then(|_| traced()).filter(|traced| traced.near.ncols() == near.ncols());
-                traces = traces.zip(traced).map(|(all, traced)| all.into_iter().chain([traced]).collect());
+                if near.ncols() > 0
+                    && let Some(mut all) = traces.take()
+                    && let Some(traced) = unknowns.exactly().traces(&cluster, &spins, (joints, &joints_of))
+                    && traced.near.ncols() == near.ncols()
+                {
+                    all.push(traced);
+                    traces = Some(all);
+                }
             }
             None => {
                 (complete, traces) = (false, None);

@@ -6,6 +6,7 @@ mod common;
 mod cycle;
 mod cycle_in_space;
 mod find;
+mod find_behind;
 mod friction;
 mod hertz;
 mod history;

@@ -47,5 +47,6 @@ mod structures;
 mod superelement;
 mod template_arch;
 mod templates;
+mod turned;
 mod unit_square;
 mod units;
