@@ -7,8 +7,10 @@ use super::profile::{ROUNDING, Shape, number, profile, zero};
 use super::quantity::{Facts, Value, history_for};
 use super::route::Route;
 use super::start::PathError;
-use crate::model::quantity::Quantity;
+use crate::model::quantity::{OfAnswer, Quantity};
 use crate::solve::Case;
+use crate::solve::error::QuestionError;
+use crate::solve::known_collapses::KnownCollapses;
 use crate::text::number::short;
 
 /// Intervals into which a range is cut where there is no exact path.
@@ -264,26 +266,88 @@ fn gather(parts: &[Part], wanted: &Wanted, place: impl Fn(f64) -> Place) -> Foun
     Found { exact: false, holds: intervals, places, covered, notes: Vec::new() }
 }
 
-/// The quantity of an answer of its own at a value; the values at which the polygon alone has one are kept between the ends
-/// of `polygon_only`.
-fn solved_value(
-    case: Case<'_>,
-    name: &str,
+/// The quantity at a value of the parameter.
+#[derive(Clone)]
+struct Look {
     at: f64,
-    quantity: &Quantity,
-    polygon_only: &Cell<Option<[f64; 2]>>,
-) -> Result<Option<Value>, PathError> {
-    let Some((there, solved)) = case.solved_at(&[(name, at)])? else { return Ok(None) };
-    if solved.answer.is_answer() && !solved.stands(case.rules.cone) {
-        let [from, to] = polygon_only.get().unwrap_or([at, at]);
-        polygon_only.set(Some([from.min(at), to.max(at)]));
+    value: Option<Value>,
+    side: Option<i8>,
+    /// Whether no answer was found in f64, and no proof was looked for.
+    quick: bool,
+}
+
+/// Answers of their own at values of a parameter.
+struct Looks<'a> {
+    case: Case<'a>,
+    name: &'a str,
+    quantity: &'a Quantity,
+    wanted: &'a Wanted,
+    /// Between these values the polygon alone has an answer somewhere.
+    polygon_only: Cell<Option<[f64; 2]>>,
+    known: KnownCollapses,
+}
+
+impl Looks<'_> {
+    fn value(&self, at: f64) -> Result<Option<Value>, PathError> {
+        let Looks { case, quantity, .. } = *self;
+        let Some((there, solved)) = case.solved_at(&[(self.name, at)])? else { return Ok(None) };
+        if solved.answer.is_answer() && !solved.stands(case.rules.cone) {
+            let [from, to] = self.polygon_only.get().unwrap_or([at, at]);
+            self.polygon_only.set(Some([from.min(at), to.max(at)]));
+        }
+        if !solved.answer.is_answer() && quantity.is_of_state() {
+            return Ok(None);
+        }
+        let there = there.case(case);
+        let history = history_for(there, std::slice::from_ref(quantity))?;
+        Ok(Facts::of_answer(there, &solved).beside(history.as_ref()).value(quantity).ok())
     }
-    if !solved.answer.is_answer() && quantity.is_of_state() {
-        return Ok(None);
+
+    fn whole(&self, at: f64) -> Result<Look, PathError> {
+        let value = self.value(at)?;
+        let side = side(self.wanted, value.as_ref(), 0.0);
+        Ok(Look { at, value, side, quick: false })
     }
-    let there = there.case(case);
-    let history = history_for(there, std::slice::from_ref(quantity))?;
-    Ok(Facts::of_answer(there, &solved).beside(history.as_ref()).value(quantity).ok())
+
+    /// The same, but where no answer is found in f64 none is looked for in other ways, and no proof that there is none.
+    fn quick(&self, at: f64) -> Result<Look, PathError> {
+        let outcome = matches!(self.quantity, Quantity::Answer(OfAnswer::Outcome));
+        let asks_for_answer =
+            matches!(self.wanted, Wanted::Word(word) if ["answer", "trivial", "normal"].contains(&word.as_str()));
+        let is_told = self.quantity.is_of_state() || (outcome && asks_for_answer);
+        if !is_told || self.case.prepared.is_in_space() {
+            return self.whole(at);
+        }
+        let word = match self.case.at(self.name, at) {
+            Err(QuestionError::Refused(_)) => return self.whole(at),
+            there => there?.case(self.case).look_for_pairs(&self.known)?.err(),
+        };
+        let Some(word) = word else { return self.whole(at) };
+        let value = outcome.then(|| Value::Word(word.to_owned()));
+        let side = side(self.wanted, value.as_ref(), 0.0);
+        Ok(Look { at, value, side, quick: true })
+    }
+
+    /// The bracket of a change between two values, narrowed until the middle tells its ends no longer apart. Where an end is one
+    /// without an answer that only looking for proofs finds, proofs are looked for on the way.
+    fn narrowed(&self, from: &Look, to: &Look, least: impl Fn(&Look, &Look) -> f64) -> Result<[Look; 2], PathError> {
+        let halved = |look: &dyn Fn(f64) -> Result<Look, PathError>| -> Result<[Look; 2], PathError> {
+            let (mut a, mut b) = (from.clone(), to.clone());
+            while (b.at - a.at).abs() > least(&a, &b) {
+                let middle = look(0.5 * (a.at + b.at))?;
+                if middle.side == a.side { a = middle } else { b = middle }
+            }
+            Ok([a, b])
+        };
+        let mut found = halved(&|at| self.quick(at))?;
+        let mut same = true;
+        for end in found.iter_mut().filter(|end| end.quick) {
+            let whole = self.whole(end.at)?;
+            same &= whole.side == end.side;
+            *end = whole;
+        }
+        if same { Ok(found) } else { halved(&|at| self.whole(at)) }
+    }
 }
 
 fn on_grid(
@@ -294,48 +358,38 @@ fn on_grid(
     wanted: &Wanted,
 ) -> Result<Found, PathError> {
     let [low, high] = range;
-    let polygon_only = Cell::new(None);
-    let look = |at: f64| -> Result<(f64, Option<Value>, Option<i8>), PathError> {
-        let value = solved_value(case, name, at, quantity, &polygon_only)?;
-        let side = side(wanted, value.as_ref(), 0.0);
-        Ok((at, value, side))
-    };
-    let mut last = look(low)?;
+    let looks = Looks { case, name, quantity, wanted, polygon_only: Cell::new(None), known: KnownCollapses::default() };
+    let least = |a: &Look, b: &Look| NARROW * a.at.abs().max(b.at.abs()).max(1e-3 * (high - low));
+    let mut last = looks.whole(low)?;
     let mut parts: Vec<Part> = Vec::new();
     let mut brackets: Vec<[f64; 2]> = Vec::new();
     let mut unclear: Vec<String> = Vec::new();
     for k in 1..=CELLS {
-        case.watch.progress(&format!("{name} = {}", last.0), k as f64 / CELLS as f64);
-        let next = look(if k == CELLS { high } else { low + (high - low) * k as f64 / CELLS as f64 })?;
-        let least = |a: f64, b: f64| NARROW * a.abs().max(b.abs()).max(1e-3 * (high - low));
-        let mut start = last.0;
-        // Each change of the side: the bracket is narrowed until the middle tells its ends no longer apart. Behind it may be
-        // a side that neither end has.
+        case.watch.progress(&format!("{name} = {}", last.at), k as f64 / CELLS as f64);
+        let next = looks.whole(if k == CELLS { high } else { low + (high - low) * k as f64 / CELLS as f64 })?;
+        let mut start = last.at;
+        // Each change of the side: behind it may be a side that neither end has.
         let mut changes = 0;
-        while last.2 != next.2 && changes < CHANGES {
+        while last.side != next.side && changes < CHANGES {
             changes += 1;
-            let (mut a, mut b) = (last.clone(), next.clone());
-            while (b.0 - a.0).abs() > least(a.0, b.0) {
-                let middle = look(0.5 * (a.0 + b.0))?;
-                if middle.2 == a.2 { a = middle } else { b = middle }
-            }
+            let [a, mut b] = looks.narrowed(&last, &next, least)?;
             // A number that is met within the width of a bracket only is passed.
-            if b.2 == Some(0) && b.0 < next.0 {
-                let beyond = look((b.0 + least(a.0, b.0)).min(next.0))?;
-                if beyond.2 != b.2 {
+            if b.side == Some(0) && b.at < next.at {
+                let beyond = looks.whole((b.at + least(&a, &b)).min(next.at))?;
+                if beyond.side != b.side {
                     b = beyond;
                 }
             }
-            let middle = 0.5 * (a.0 + b.0);
-            brackets.push([a.0, b.0]);
-            parts.push(Part { from: start, to: middle, side: a.2, ends: [last.1.clone(), a.1] });
+            let middle = 0.5 * (a.at + b.at);
+            brackets.push([a.at, b.at]);
+            parts.push(Part { from: start, to: middle, side: a.side, ends: [last.value.clone(), a.value] });
             (start, last) = (middle, b);
         }
-        if last.2 != next.2 {
-            let [from, to] = [start, next.0].map(short);
+        if last.side != next.side {
+            let [from, to] = [start, next.at].map(short);
             unclear.push(format!("between {name} = {from} and {to} there are more changes than were narrowed"));
         }
-        parts.push(Part { from: start, to: next.0, side: next.2, ends: [last.1, next.1.clone()] });
+        parts.push(Part { from: start, to: next.at, side: next.side, ends: [last.value, next.value.clone()] });
         last = next;
     }
     let bracket = |value: f64| brackets.iter().copied().find(|[a, b]| (*a..=*b).contains(&value));
@@ -347,7 +401,7 @@ fn on_grid(
         CELLS + 1
     ));
     found.notes.extend(unclear);
-    if let Some([from, to]) = polygon_only.get() {
+    if let Some([from, to]) = looks.polygon_only.get() {
         found.notes.push(format!(
             "at values between {name} = {from} and {to} the answer is one of the friction polygon, and none on Coulomb's cone was \
              found: `find least|most {name} A..B where outcome answer` counts those on the cone only"

@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
+use super::profile::ROUNDING;
 use super::rate::{place_beside_laws, problem_rates, rate_lcp};
 use super::standstill::{Rounding, Standstill, further};
 use super::start::{PathError, cold, final_basis, is_off_paths, plane_system, state_of};
@@ -97,11 +98,18 @@ impl FrictionPath {
     }
 }
 
-/// The pairs at a vertex. Where its scheme ends a variable is zero to rounding: below zero it would be a slip to the other side.
+/// The pairs at a vertex. Where its scheme ends a variable is zero to rounding, as far as the forces that it makes tell: below zero it
+/// would be a slip to the other side.
 fn pairs_of(prepared: &Prepared, problem: &ContactProblem, contact: &ContactLcp, point: &Point) -> Vec<PairState> {
-    let mut point = point.clone();
-    point.z.iter_mut().for_each(|z| *z = z.max(0.0));
-    let state = state_of(problem, contact, &point);
+    let mut state = state_of(problem, contact, point);
+    if point.z.iter().any(|z| *z < 0.0) {
+        let z = point.z.iter().map(|z| z.max(0.0)).collect();
+        let clean = state_of(problem, contact, &Point { z, ..point.clone() });
+        let forces = &problem.system.stiffness * (&clean.z - &state.z);
+        if forces.amax() <= ROUNDING * problem.load.amax() {
+            state = clean;
+        }
+    }
     let mut pairs = pair_states(problem, contact, &state);
     prepared.add_released_slips(&mut pairs, problem, &state.z);
     pairs
