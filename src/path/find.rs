@@ -3,10 +3,10 @@
 
 use std::cell::Cell;
 
-use super::profile::{ROUNDING, Shape, number, profile, zero};
+use super::profile::{Shape, number, profile, zero};
 use super::quantity::{Facts, Value, history_for};
 use super::route::Route;
-use super::start::PathError;
+use super::start::{PathError, ROUNDING};
 use crate::model::quantity::{OfAnswer, Quantity};
 use crate::solve::Case;
 use crate::solve::error::QuestionError;

@@ -14,10 +14,9 @@ use std::sync::Arc;
 
 use super::change::{Breakpoint, changes};
 use super::end::PathEnd;
-use super::profile::ROUNDING;
 use super::rate::{place_beside_laws, problem_rates, rate_lcp};
 use super::standstill::{Rounding, Standstill, further};
-use super::start::{PathError, cold, final_basis, is_off_paths, plane_system, state_of};
+use super::start::{PathError, ROUNDING, cold, final_basis, is_off_paths, plane_system, state_of};
 use crate::answer::pairs::pair_states;
 use crate::answer::record::PairState;
 use crate::contact::lcp::contact_lcp;

@@ -2,7 +2,7 @@
 
 use super::quantity::Value;
 use super::route::{Route, Stretch};
-use super::start::PathError;
+use super::start::{PathError, ROUNDING};
 use crate::model::quantity::Quantity;
 
 /// A parabola stands for the function where it meets it at the quarters to this share of the largest value.
@@ -11,8 +11,6 @@ const FAITHFUL: f64 = 1e-4;
 const STRAIGHT: f64 = 1e-10;
 /// A stretch is halved this often at most.
 const HALVINGS: usize = 12;
-/// A difference of values below this share of them is rounding.
-pub const ROUNDING: f64 = 1e-12;
 /// How far from an end, as a share of the way to the next point, a turn close to it shows. What falls and rises again
 /// within half of the least differs from the end by its square in a smooth function: by rounding.
 const BESIDE: [f64; 4] = [0.25, 1e-2, 1e-4, 1e-6];

@@ -19,6 +19,8 @@ use crate::solve::{Solved, state::RunData};
 use crate::text::number::short;
 use crate::watch::Watch;
 
+/// A difference of values on a path below this share of them is rounding.
+pub(super) const ROUNDING: f64 = 1e-12;
 /// No path makes more pivots than this.
 pub const PIVOTS: usize = 100_000;
 
