@@ -114,7 +114,8 @@ fn every_table_is_written_as_csv_and_json() {
              slip_increment_base[1],slip_increment_base[2],dissipated,work,stored,balance,changes",
             2,
         ),
-        ("sensitivity", "f", "parameter,value,pair,x_n,x_t,z_n,z_t", 6),
+        ("sensitivity", "", "parameter,value,pair,x_n,x_t,z_n,z_t", 6),
+        ("sensitivity", "f", "parameter,value,pair,x_n,x_t,z_n,z_t", 3),
     ] {
         let (names, rows) = header(what, of);
         assert_eq!((names.join(","), rows), (columns.to_owned(), count), "{what}");
