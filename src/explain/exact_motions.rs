@@ -26,9 +26,6 @@ pub(super) fn exact_motions(traces: &[Traces], joints: usize) -> Option<Vec<Vec<
     let mut moved = vec![Vec::new(); joints];
     let mut motion = 0;
     for Traces { rows, near, joints } in traces {
-        if near.ncols() == 0 {
-            continue;
-        }
         let mut equations = Equations::new(near.nrows(), end);
         rows.iter().for_each(|row| equations.add(summed(row)));
         let joints: Vec<(usize, BTreeMap<usize, Dyadic>)> =

@@ -8,9 +8,10 @@ use super::quantity::{Facts, Value, history_for};
 use super::route::Route;
 use super::start::{PathError, ROUNDING};
 use crate::model::quantity::{OfAnswer, Quantity};
-use crate::solve::Case;
+use crate::solve::case::There;
 use crate::solve::error::QuestionError;
 use crate::solve::known_collapses::KnownCollapses;
+use crate::solve::{Case, Solved};
 use crate::text::number::short;
 
 /// Intervals into which a range is cut where there is no exact path.
@@ -288,25 +289,31 @@ struct Looks<'a> {
 }
 
 impl Looks<'_> {
-    fn value(&self, at: f64) -> Result<Option<Value>, PathError> {
+    fn value(&self, there: &There, solved: &Solved) -> Result<Option<Value>, PathError> {
         let Looks { case, quantity, .. } = *self;
-        let Some((there, solved)) = case.solved_at(&[(self.name, at)])? else { return Ok(None) };
-        if solved.answer.is_answer() && !solved.stands(case.rules.cone) {
-            let [from, to] = self.polygon_only.get().unwrap_or([at, at]);
-            self.polygon_only.set(Some([from.min(at), to.max(at)]));
-        }
         if !solved.answer.is_answer() && quantity.is_of_state() {
             return Ok(None);
         }
         let there = there.case(case);
         let history = history_for(there, std::slice::from_ref(quantity))?;
-        Ok(Facts::of_answer(there, &solved).beside(history.as_ref()).value(quantity).ok())
+        Ok(Facts::of_answer(there, solved).beside(history.as_ref()).value(quantity).ok())
     }
 
     fn whole(&self, at: f64) -> Result<Look, PathError> {
-        let value = self.value(at)?;
+        let mut value = None;
+        if let Some((there, solved)) = self.case.solved_at(&[(self.name, at)])? {
+            if solved.answer.is_answer() && !solved.stands(self.case.rules.cone) {
+                let [from, to] = self.polygon_only.get().unwrap_or([at, at]);
+                self.polygon_only.set(Some([from.min(at), to.max(at)]));
+            }
+            value = self.value(&there, &solved)?;
+        }
+        Ok(self.look(at, value, false))
+    }
+
+    fn look(&self, at: f64, value: Option<Value>, quick: bool) -> Look {
         let side = side(self.wanted, value.as_ref(), 0.0);
-        Ok(Look { at, value, side, quick: false })
+        Look { at, value, side, quick }
     }
 
     /// The same, but where no answer is found in f64 none is looked for in other ways, and no proof that there is none.
@@ -318,14 +325,14 @@ impl Looks<'_> {
         if !is_told || self.case.prepared.is_in_space() {
             return self.whole(at);
         }
-        let word = match self.case.at(self.name, at) {
-            Err(QuestionError::Refused(_)) => return self.whole(at),
-            there => there?.case(self.case).look_for_pairs(&self.known)?.err(),
+        let there = match self.case.at(self.name, at) {
+            Err(QuestionError::Refused(_)) => return Ok(self.look(at, None, false)),
+            there => there?,
         };
-        let Some(word) = word else { return self.whole(at) };
-        let value = outcome.then(|| Value::Word(word.to_owned()));
-        let side = side(self.wanted, value.as_ref(), 0.0);
-        Ok(Look { at, value, side, quick: true })
+        Ok(match there.case(self.case).look_for_pairs(&self.known)? {
+            Ok(solved) => self.look(at, self.value(&there, &solved.completed())?, false),
+            Err(word) => self.look(at, outcome.then(|| Value::Word(word.to_owned())), true),
+        })
     }
 
     /// The bracket of a change between two values, narrowed until the middle tells its ends no longer apart. Where an end is one

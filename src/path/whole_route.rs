@@ -30,20 +30,22 @@ impl<'a> Route<'a> {
     /// No answer at either end, at the present value and at 31 between; see [`PathError`].
     pub fn over_all(case: Case<'a>, name: &str, range: [f64; 2]) -> Result<Option<Route<'a>>, PathError> {
         let known = KnownCollapses::default();
-        let route = match Route::new(case, name, range) {
-            Err(PathError::NoStart { name: of, at, how }) => {
+        let mut route = match Route::new(case, name, range) {
+            Ok(Some(route)) => route,
+            Err(no_start @ PathError::NoStart { .. }) => {
                 let mut route = Route::empty(case, name);
                 let inner = DIVISIONS.iter().flat_map(|&cells| (1..cells).step_by(2).map(move |k| (k, cells)));
                 let looks: Vec<f64> = inner.map(|(k, cells)| k as f64 / cells as f64).collect();
-                let whole = route.fill(range, &looks, AGAIN, &known)?;
-                if whole && route.stretches.is_empty() {
-                    return Err(PathError::NoStart { name: of, at, how });
+                if !route.fill(range, &looks, AGAIN, &known)? {
+                    return Ok(None);
                 }
-                whole.then_some(route)
+                if route.stretches.is_empty() {
+                    return Err(no_start);
+                }
+                return Ok(Some(route).filter(|route| !route.stops_short()));
             }
-            found => found?,
+            none => return none,
         };
-        let Some(mut route) = route else { return Ok(None) };
         let [low, high] = range;
         let [from, to] = route.covered();
         for (upwards, rest) in [(false, [from, low]), (true, [to, high])] {
@@ -106,12 +108,15 @@ impl<'a> Route<'a> {
         from.chain(without).collect()
     }
 
-    /// The first of some values at which a run of its own finds another answer, in a sentence.
+    /// The least of some values at which a run of its own finds another answer, in a sentence.
     ///
     /// # Errors
     /// Stopped.
     pub fn other_answer(&self, places: impl IntoIterator<Item = f64>) -> Result<Option<String>, PathError> {
         let known = KnownCollapses::default();
+        let mut places: Vec<f64> = places.into_iter().collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup();
         for at in places {
             let followed: Vec<_> = self
                 .stretches
